@@ -1,6 +1,7 @@
 //! The effects of the mouse: it paints taxels, and otherwise does what a key would, also on the lines that name keys.
 //!
-//! A press on a taxel switches it, and a drag from there gives all taxels on its way the same state, as one change.
+//! A press on a taxel switches it, and a drag from there gives all taxels on its way the same state, as one change. A
+//! press on a piece that is not described chooses it; a second press switches its taxel.
 //! Where two taxels share a character, a press switches the one with the cursor, otherwise the upper one. On a page,
 //! the page itself decides what a click means ([`crate::tui::app::page::Page::click`]).
 
@@ -12,6 +13,15 @@ use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::app::state::{App, NarrowPane};
 use crate::tui::app::{menu, status};
 use crate::tui::widget::write::taxels;
+
+/// A drag over the taxels.
+#[derive(Clone, Copy, Debug)]
+pub struct Paint {
+    active: bool,
+    from: (u8, u8),
+    /// Whether a taxel was switched already.
+    begun: bool,
+}
 
 #[derive(Clone, Debug, PartialEq)]
 enum Target {
@@ -33,18 +43,38 @@ pub(in crate::tui) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
         (MouseKind::Release, _) => app.paint = None,
         (MouseKind::Press, Some(Target::Taxel(column, row, whole))) => {
             app.begin_action();
-            app.paint = Some((!app.reading().imprint.get(column, row), (column, row)));
-            let mut document = app.history.present().clone();
-            document.edits.toggle(column, row);
-            change(app, document);
+            let (reading, from) = (app.reading(), (column, row));
+            let active = !reading.imprint.get(column, row);
+            let described = reading.region(app.chosen()).map(|(index, _)| index);
+            let mut pieces = reading.regions.iter();
+            let piece = pieces.position(|piece| piece.taxels().get(column, row));
+            let other = piece.filter(|_| !active && piece != described);
+            let begun = other.is_none();
+            app.paint = Some(Paint {
+                active,
+                from,
+                begun,
+            });
+            if begun {
+                let mut document = app.history.present().clone();
+                document.edits.toggle(column, row);
+                change(app, document);
+            } else {
+                app.history.choose(other);
+            }
             if whole {
                 app.cursor = (column, row);
             }
         }
         (MouseKind::Drag, Some(Target::Taxel(column, row, whole))) => {
-            if let Some((active, from)) = app.paint {
-                app.paint = Some((active, (column, row)));
-                paint(app, active, from, (column, row));
+            let moved = |paint: &Paint| paint.from != (column, row);
+            if let Some(own) = app.paint.filter(moved) {
+                paint(app, own, (column, row));
+                app.paint = Some(Paint {
+                    from: (column, row),
+                    begun: true,
+                    ..own
+                });
                 if whole {
                     app.cursor = (column, row);
                 }
@@ -60,7 +90,15 @@ pub(in crate::tui) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
 }
 
 /// The taxels of a drag are one change: one undo takes all of them back.
-fn paint(app: &mut App, active: bool, from: (u8, u8), to: (u8, u8)) {
+fn paint(
+    app: &mut App,
+    Paint {
+        active,
+        from,
+        begun,
+    }: Paint,
+    to: (u8, u8),
+) {
     let imprint = app.reading().imprint;
     let mut document = app.history.present().clone();
     let steps = from.0.abs_diff(to.0).max(from.1.abs_diff(to.1)).max(1);
@@ -79,8 +117,12 @@ fn paint(app: &mut App, active: bool, from: (u8, u8), to: (u8, u8)) {
             document.edits.toggle(column, row);
         }
     }
-    app.history.amend(document);
-    settle(app);
+    if begun {
+        app.history.amend(document);
+        settle(app);
+    } else {
+        change(app, document);
+    }
 }
 
 /// Returns the message of a notch of the wheel, up if negative; None if there is nothing to scroll.

@@ -14,10 +14,11 @@ use taxel_files::formats::StoredShape;
 use crate::tui::app::document::{Document, ReadDocument, Reading};
 use crate::tui::app::history::{History, StoredName};
 use crate::tui::app::message::Message;
+use crate::tui::app::mouse::Paint;
 use crate::tui::app::page::{Page, Slot, find, find_mut};
 use crate::tui::app::view::Panes;
 use crate::tui::explore::results::Results;
-use crate::tui::form::state::{FormDialog, FormMemory};
+use crate::tui::form::{FormDialog, FormMemory};
 use crate::tui::grid::Grid;
 use crate::tui::jobs::Jobs;
 use crate::tui::keys::action::{self, Action};
@@ -170,7 +171,7 @@ pub struct App {
     pub(in crate::tui) moves: Option<MoveKind>,
     /// While the cursor draws: the state of the taxels that it passes.
     pub(in crate::tui) pen: Option<bool>,
-    pub(in crate::tui) paint: Option<(bool, (u8, u8))>,
+    pub(in crate::tui) paint: Option<Paint>,
     pub(in crate::tui) screen: (u16, u16),
     pub(in crate::tui) theme: Theme,
     pub(in crate::tui) keymap: Keymap,

@@ -21,7 +21,7 @@ use crate::tui::app::page::{Flow, Page, Slot};
 use crate::tui::app::state::App;
 use crate::tui::explore::message::name_of;
 use crate::tui::explore::work::in_ranges;
-use crate::tui::form::state::RememberedRanges;
+use crate::tui::form::RememberedRanges;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::widget::field_list::{FieldList, FieldRows, FormError, FormField};

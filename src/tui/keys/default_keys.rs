@@ -45,7 +45,7 @@ pub static PLACES: &[Place] = &[
         ("U<C-r>", &[&REDO], "", "redo what was undone"),
         ("=", &[&COMPARE], "", "compare with the state before the last step"),
         ("H", &[&HISTORY], "", "History: all steps, to go back to any of them"),
-        ("<Tab><S-Tab>", &[&REGION, &PREVIOUS_REGION], "region", "describe the next, the previous piece or hole"),
+        ("<Tab><S-Tab>", &[&REGION, &PREVIOUS_REGION], "region", "describe the next, previous piece or hole; or click it"),
         ("e", &[&EXPLORE], "explore", "Explore: all imprints of the shape, over all poses"),
         ("r", &[&RECOGNISE], "recognise", "Recognise: name the shape from its imprint"),
         ("c", &[&COVERAGE], "coverage", "coverage in shades, in percent, the imprint again"),

@@ -29,7 +29,7 @@ use crate::tui::app::unsaved::quit;
 use crate::tui::explain::Explain;
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::work::explored;
-use crate::tui::form::state::FormDialog;
+use crate::tui::form::FormDialog;
 use crate::tui::help::Help;
 use crate::tui::history::HistoryDialog;
 use crate::tui::jobs::answer;

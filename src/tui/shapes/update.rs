@@ -20,7 +20,7 @@ use crate::tui::app::page::{Flow, find_mut};
 use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, Saving};
 use crate::tui::app::unsaved::quit;
-use crate::tui::form::state::FormDialog;
+use crate::tui::form::FormDialog;
 use crate::tui::jobs::{answer, caught};
 use crate::tui::keys::action;
 use crate::tui::shapes::state::{ListDialog, ListPurpose};

@@ -6,7 +6,7 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
-use taxel_core::parameter::{Parameter, ParameterError, Range};
+use taxel_core::parameter::{Parameter, ParameterError};
 use taxel_core::sensor::Sensor;
 
 use crate::tui::app::message::Message;
@@ -71,10 +71,6 @@ impl<F: FormField> FieldList<F> {
         &mut self.fields
     }
 
-    pub fn take_fields(&mut self) -> Vec<F> {
-        std::mem::take(&mut self.fields)
-    }
-
     pub fn sensor(&self) -> &Sensor {
         &self.sensor
     }
@@ -122,8 +118,7 @@ impl<F: FormField> FieldList<F> {
     }
 }
 
-pub const WIDE: u16 = 40;
-
+/// The places of the rows of a form, of which those scroll that do not fit.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldRows {
     area: Rect,
@@ -141,14 +136,16 @@ impl FieldRows {
         let spacing = if two_lines { 2 } else { 1 };
         let area = write::below(area, fixed * spacing);
         let visible = usize::from(area.height / spacing).min(rows);
+        let first = focus.map_or(0, |focus| (focus + 1).saturating_sub(visible));
         Self {
             area,
             spacing,
-            first: focus.map_or(0, |focus| (focus + 1).saturating_sub(visible)),
+            first,
             visible,
         }
     }
 
+    /// Draws the fields, with labels and inputs of these widths, and returns the position of the cursor.
     pub fn draw<F: FormField>(
         &self,
         theme: &Theme,
@@ -159,24 +156,24 @@ impl FieldRows {
     ) -> Option<Position> {
         let mut cursor = None;
         for (index, place) in self.visible() {
-            let Some(field) = list.fields().get(index) else {
-                break;
-            };
-            let focused = list.focus() == Some(index);
-            let row = FieldRow {
-                field,
-                focused,
-                range: list.sensor().range(field.parameter()),
-                remark: remark(field),
-                error: field.error(list.sensor()).map(|error| error.brief),
-            };
-            let at = row.draw(theme, widths, buffer, place);
-            cursor = cursor.or(focused.then_some(at));
+            if let Some(field) = list.fields.get(index) {
+                let focused = list.focus == Some(index);
+                let at = draw_field(theme, field, focused, widths, buffer, place);
+                cursor = cursor.or(focused.then_some(at.0));
+                draw_remarks(
+                    theme,
+                    field,
+                    &list.sensor,
+                    remark(field),
+                    buffer,
+                    (place, at.1),
+                );
+            }
         }
         cursor
     }
 
-    pub fn visible(&self) -> impl Iterator<Item = (usize, Rect)> {
+    pub fn visible(&self) -> impl Iterator<Item = (usize, Rect)> + use<> {
         let rows = *self;
         (0..rows.visible).map(move |index| {
             let below = write::below(rows.area, narrow(index) * rows.spacing);
@@ -197,69 +194,68 @@ impl FieldRows {
     }
 }
 
-#[derive(Clone, Debug)]
-struct FieldRow<'a, F> {
-    field: &'a F,
+/// Draws label and text. A field with the focus is as wide as its text. Returns the position of the cursor, and the
+/// column after the field.
+fn draw_field<F: FormField>(
+    theme: &Theme,
+    field: &F,
     focused: bool,
-    range: Range,
-    remark: Option<&'static str>,
-    error: Option<String>,
+    (label, least): (usize, usize),
+    buffer: &mut Buffer,
+    row: Rect,
+) -> (Position, u16) {
+    let most = usize::from(row.width).saturating_sub(label).max(least);
+    let (role, at, width) = match (focused, write::width(field.text()) + 1) {
+        (true, needed) => (
+            Role::Focus,
+            field.input().cursor(),
+            needed.clamp(least, most),
+        ),
+        // Without the focus it is shown from its start.
+        (false, _) => (Role::Text, 0, least),
+    };
+    let (shown, cursor) = write::field_columns(field.text(), at, width, theme);
+    let name = format!("{:label$}", field.parameter().row().label);
+    write::line(buffer, row, theme, [(&*name, Role::Text), (&*shown, role)]);
+    let column = |after: usize| row.x.saturating_add(narrow(label + after));
+    (Position::new(column(cursor), row.y), column(width + 1))
 }
 
-impl<F: FormField> FieldRow<'_, F> {
-    /// Returns the position that the text cursor has in the field.
-    fn draw(
-        &self,
-        theme: &Theme,
-        (label, input): (usize, usize),
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Position {
-        // Without the focus a field is shown from its start; with the focus, its cursor must be visible.
-        let at = if self.focused {
-            self.field.input().cursor()
-        } else {
-            0
-        };
-        let (shown, cursor) = write::field_columns(self.field.text(), at, input, theme);
-        let role = if self.focused {
-            Role::Focus
-        } else {
-            Role::Text
-        };
-        let name = format!("{:label$}", self.field.parameter().row().label);
-        let line = write::row(area, 0);
-        write::line(buffer, line, theme, [(&*name, Role::Text), (&*shown, role)]);
-        let beside = write::right_of(line, area.x.saturating_add(narrow(label + input + 1)));
-        let under = write::right_of(write::row(area, 1), area.x.saturating_add(2));
-        let (first, second) = match (area.height, area.width >= WIDE) {
-            (2, true) => (beside, Some(under)),
-            (2, false) => (under, None),
-            _ => (beside, None),
-        };
-        if self.error.is_none() || second.is_some() {
-            self.draw_range(theme, buffer, first, second);
+/// Draws what is allowed beside a field, and below it what is wrong with it or a remark; on a single line, the error
+/// or both.
+fn draw_remarks<F: FormField>(
+    theme: &Theme,
+    field: &F,
+    sensor: &Sensor,
+    remark: Option<&str>,
+    buffer: &mut Buffer,
+    (row, after): (Rect, u16),
+) {
+    let bare = sensor.range(field.parameter()).to_string();
+    let range = field.parameter().row().unit.after(&bare);
+    let error = field
+        .error(sensor)
+        .map(|error| format!("! {}", error.brief));
+    let second = match (&error, remark) {
+        (Some(error), _) => Some((error.as_str(), Role::Error)),
+        (None, remark) => remark.map(|remark| (remark, Role::Quiet)),
+    };
+    let beside = write::right_of(row, after);
+    let under = write::right_of(write::row(row, 1), row.x.saturating_add(2));
+    match second {
+        Some((text, role)) if under.height > 0 => {
+            write::text(buffer, beside, theme, &range, Role::Quiet);
+            write::text(buffer, under, theme, text, role);
         }
-        if let Some(error) = &self.error {
-            let place = second.unwrap_or(first);
-            let text = format!("! {error}");
-            write::text(buffer, place, theme, &text, Role::Error);
+        Some((error, Role::Error)) => {
+            write::text(buffer, beside, theme, error, Role::Error);
         }
-        Position::new(area.x.saturating_add(narrow(label + cursor)), area.y)
-    }
-
-    fn draw_range(&self, theme: &Theme, buffer: &mut Buffer, area: Rect, under: Option<Rect>) {
-        let bare = self.range.to_string();
-        let range = self.field.parameter().row().unit.after(&bare);
-        let (beside, below) = match (self.remark.filter(|_| self.error.is_none()), under) {
-            (None, _) => (range, None),
-            (Some(remark), Some(under)) => (range, Some((under, remark))),
-            // Without the unit, both have room on a screen of 80 columns.
-            (Some(remark), None) => (format!("{bare}; {remark}"), None),
-        };
-        write::text(buffer, area, theme, &beside, Role::Quiet);
-        if let Some((under, remark)) = below {
-            write::text(buffer, under, theme, remark, Role::Quiet);
+        // Without the unit, both have room on a screen of 80 columns.
+        Some((remark, role)) => {
+            write::text(buffer, beside, theme, &format!("{bare}; {remark}"), role);
+        }
+        None => {
+            write::text(buffer, beside, theme, &range, Role::Quiet);
         }
     }
 }
