@@ -341,7 +341,7 @@ fn a_whole_screen_is_expected() {
         "line 3: the screen is not that of form; --update writes it"
     );
     assert!(
-        screens.contains("- Radius x") && screens.contains("+ Radius x"),
+        screens.contains("Radius x  4.00") && screens.contains("Radius x  9 "),
         "{screens}"
     );
     let outside = play("f", "../form", true).expect_err("it is outside");
