@@ -11,7 +11,6 @@ use taxel_core::quote::shortened_message;
 use taxel_files::formats::file::system_reason;
 use taxel_files::storage::FileError;
 
-use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
 
 #[derive(Clone, Debug)]
@@ -98,10 +97,6 @@ impl<E: Error + 'static> From<E> for Failure {
             Self::new(system_reason(error)).with_status(u8::from(!is_closed_pipe))
         } else if let Some(error) = any.downcast_ref::<clap::Error>() {
             Self::of_arguments(error)
-        } else if let Some(CliError::Failure(failure)) = any.downcast_ref() {
-            failure.clone()
-        } else if let Some(error) = any.downcast_ref::<CliError>() {
-            error.failure()
         } else if let Some(error) = any.downcast_ref::<FileError>().filter(|own| own.exists()) {
             let path = error.path.to_string_lossy();
             Self::new(format!("{path:?} already exists; --force replaces it"))

@@ -573,8 +573,3 @@ impl Pitch {
         self.given.or(own).or(self.usual)
     }
 }
-
-// Names that commands which are still read by hand use.
-pub(crate) mod resolved {
-    pub(crate) use super::{Pitch, Settings as Effective};
-}

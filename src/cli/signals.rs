@@ -10,7 +10,7 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::flag;
 use taxel_core::progress::{Progress, stop_if};
 
-use crate::cli::error::CliError;
+use crate::cli::failure::Failure;
 
 const STOPPING: [(i32, u8); 3] = [(SIGINT, 130), (SIGTERM, 143), (SIGHUP, 129)];
 
@@ -43,11 +43,7 @@ pub(crate) struct Signals {
 }
 
 impl Signals {
-    pub(crate) fn catch() -> Result<Self, CliError> {
-        Self::registered().map_err(CliError::System)
-    }
-
-    fn registered() -> io::Result<Self> {
+    pub(crate) fn catch() -> Result<Self, Failure> {
         let (stopped, last) = (Arc::default(), Arc::default());
         for (index, &(signal, status)) in STOPPING.iter().enumerate() {
             if is_ignored(signal) {
@@ -74,9 +70,8 @@ impl Signals {
         !self.stopped.load(Ordering::Relaxed)
     }
 
-    pub(crate) fn failure(&self) -> CliError {
-        let status = self.status();
-        CliError::Stopped { status }
+    pub(crate) fn failure(&self) -> Failure {
+        Failure::new("stopped; nothing was written").with_status(self.status())
     }
 
     pub(crate) fn status(&self) -> u8 {
@@ -84,7 +79,6 @@ impl Signals {
     }
 }
 
-pub(crate) fn pool(jobs: usize) -> Result<ThreadPool, CliError> {
-    let pool = ThreadPoolBuilder::new().num_threads(jobs).build();
-    pool.map_err(|error| CliError::System(io::Error::other(error)))
+pub(crate) fn pool(jobs: usize) -> Result<ThreadPool, Failure> {
+    Ok(ThreadPoolBuilder::new().num_threads(jobs).build()?)
 }

@@ -1,5 +1,4 @@
-//! Flags that several commands have: their definitions, the parsers of their text, and functions that read their
-//! values.
+//! Parsers of values that flags have.
 //!
 //! A parser here returns only its reason; clap puts the flag and the given text before it:
 //! `error: invalid value '7' for '--positions <N>': expected 1, 2, 4, …`.
@@ -12,24 +11,9 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
-use clap::error::ErrorKind;
-use clap::{Arg, ArgAction, ArgMatches};
-use taxel_core::parameter::{Parameter, UnknownName, number};
+use taxel_core::parameter::{UnknownName, number};
 use taxel_core::sweep::{Shard, ShardError};
-use taxel_files::formats::Name;
 use taxel_files::formats::file::has_ending;
-use taxel_files::storage::Existing;
-
-use crate::cli::arguments::parameters;
-use crate::cli::error::CliError;
-use crate::cli::settings::resolved::{Effective, Pitch};
-
-pub(crate) fn switch(name: &'static str, help: &'static str) -> Arg {
-    Arg::new(name)
-        .long(name)
-        .action(ArgAction::SetTrue)
-        .help(help)
-}
 
 /// Parses a name, file or other source, which must not be empty.
 pub(crate) fn name_or_path() -> impl TypedValueParser<Value = OsString> {
@@ -73,40 +57,6 @@ where
 
 pub(crate) const TOO_LITTLE_MEMORY: &str = "take coarser steps, work in shards (--shard 1/8, ..., then taxel merge), or allow more (--memory)";
 
-pub(crate) fn existing(matches: &ArgMatches) -> Existing {
-    if matches.get_flag("force") {
-        Existing::Replaced
-    } else {
-        Existing::Kept
-    }
-}
-
-pub(crate) fn force() -> Arg {
-    switch("force", "Replace an existing shape of this name")
-}
-
-pub(crate) fn name(help: &'static str) -> Arg {
-    Arg::new("name")
-        .value_name("NAME")
-        .required(true)
-        .value_parser(Name::new)
-        .help(help)
-}
-
-/// Defines a positional argument that is a name or a file; [`Shelf::find`](crate::cli::input::shapes::Shelf::find)
-/// decides which.
-pub(crate) fn what(help: &'static str) -> Arg {
-    Arg::new("what")
-        .value_name("NAME|FILE")
-        .required(true)
-        .value_parser(name_or_path())
-        .help(help)
-}
-
-pub(crate) fn json() -> Arg {
-    switch("json", "Print JSON, one line per answer")
-}
-
 pub(crate) fn parse_probability(text: &str) -> Result<f64, String> {
     let number = parse_number(text)?;
     (0.0..=1.0)
@@ -144,74 +94,10 @@ fn file_of(
     })
 }
 
-pub(crate) fn required<T: Clone + Send + Sync + 'static>(
-    matches: &ArgMatches,
-    id: &str,
-) -> Result<T, CliError> {
-    matches.get_one::<T>(id).cloned().ok_or_else(|| {
-        let message = format!("the argument '{id}' is required\n");
-        clap::Error::raw(ErrorKind::MissingRequiredArgument, message).into()
-    })
-}
-
-/// Returns the error for a subcommand that is defined but not handled. Such a bug must not run another subcommand.
-pub(crate) fn unhandled_subcommand(name: &str) -> CliError {
-    let message = format!("{name:?} is not implemented; this is a bug\n");
-    clap::Error::raw(ErrorKind::InvalidSubcommand, message).into()
-}
-
-// What commands need that are still read by hand.
-
-pub(crate) use crate::cli::arguments::parameters::{Given, Group, OfSensor};
-
-pub(crate) fn of_sensor(parameters: &[Parameter]) -> Vec<Arg> {
-    let flag = |&parameter: &Parameter| arg(parameter).help_heading("Sensor");
-    parameters.iter().map(flag).collect()
-}
-
-pub(crate) fn arg(parameter: Parameter) -> Arg {
-    parameters::arg(parameter, &OfSensor::default(parameter))
-}
-
-pub(crate) fn wrapped(text: &str, _width: usize) -> String {
-    text.to_owned()
-}
-
 pub(crate) fn one_of<T, N>(names: N) -> impl TypedValueParser<Value = T>
 where
     T: FromStr<Err = UnknownName> + Clone + Send + Sync + 'static,
     N: IntoIterator<Item = &'static str>,
 {
     PossibleValuesParser::new(names).try_map(|name| name.parse())
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Form {
-    Json(Pitch),
-    /// The matrix and a table, which is in mm too if the pitch is known.
-    Table(Pitch),
-}
-
-impl Form {
-    #[allow(dead_code, reason = "for commands that are still read by hand")]
-    pub(crate) fn new(json: bool, pitch: Pitch) -> Self {
-        if json {
-            Self::Json(pitch)
-        } else {
-            Self::Table(pitch)
-        }
-    }
-
-    pub(crate) fn of(matches: &ArgMatches, settings: &Effective) -> Result<Self, CliError> {
-        let pitch = pitch_of(matches, settings)?;
-        Ok(if matches.get_flag("json") {
-            Self::Json(pitch)
-        } else {
-            Self::Table(pitch)
-        })
-    }
-}
-
-pub(crate) fn pitch_of(matches: &ArgMatches, settings: &Effective) -> Result<Pitch, CliError> {
-    Ok(Given::of(matches).pitch(settings)?)
 }

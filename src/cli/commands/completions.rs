@@ -3,8 +3,8 @@
 use clap_complete::Shell;
 
 use crate::cli::Context;
-use crate::cli::arguments::definitions;
 use crate::cli::failure::Failure;
+use crate::cli::program;
 
 const EXAMPLES: &str = "\
 Write the script to a file that your shell reads, as in the examples, and start
@@ -29,7 +29,7 @@ pub(crate) struct Completions {
 impl Completions {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
         let mut script = Vec::new();
-        clap_complete::generate(self.shell, &mut definitions::all(), "taxel", &mut script);
+        clap_complete::generate(self.shell, &mut program::definition(), "taxel", &mut script);
         cx.write(&script)
     }
 }

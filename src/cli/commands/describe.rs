@@ -10,7 +10,7 @@ use crate::cli::arguments::parameters::PitchFlag;
 use crate::cli::failure::Failure;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::report;
-use crate::cli::settings::resolved::Pitch;
+use crate::cli::settings::Pitch;
 
 const EXAMPLES: &str = "\
 An imprint is text with one line per row, '#' for an active taxel and '.' for an

@@ -18,7 +18,7 @@ use taxel_files::acquire::{AcquireOptions, FrameSource, Playback};
 use taxel_files::formats::recording::{Column, Format, ReadOptions, TimeColumn};
 use taxel_files::storage::ModelChoice;
 
-use crate::cli::arguments::flags::{parse_number, whole, wrapped};
+use crate::cli::arguments::flags::{parse_number, whole};
 use crate::cli::commands::recognise::NamingFlags;
 use crate::cli::failure::Failure;
 use crate::cli::input::recording;
@@ -232,7 +232,7 @@ fn formats() -> impl Iterator<Item = &'static str> {
 
 fn formats_help() -> String {
     let names: Vec<&str> = formats().collect();
-    wrapped(&format!("Format of the stream: {}", names.join(", ")), 52)
+    format!("Format of the stream: {}", names.join(", "))
 }
 
 fn parse_speed(text: &str) -> Result<f64, String> {

@@ -1,314 +1,435 @@
 //! `taxel library`: lists, shows, stores, deletes, restores and checks shapes.
 
-use std::ffi::OsStr;
-use std::fmt::{self, Write};
+use std::ffi::OsString;
+use std::io::{self, IsTerminal};
 use std::iter;
-use std::path::Path;
 
+use clap::{Args, Subcommand};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
-use serde::ser::{SerializeMap, Serializer};
 use taxel_core::description::{RegionKind, regions};
 use taxel_core::quote::{as_argument, shortened_message};
 use taxel_core::sensor::Sensor;
 use taxel_files::formats::{Content, Name, StoredShape, json};
-use taxel_files::storage::{
-    Existing, Library, LibraryEntry, LibraryError, LoadedShape, ShapeOrigin,
-};
+use taxel_files::storage::{Library, LibraryEntry, LibraryError, ShapeOrigin};
 
-use crate::cli::arguments::flags::Form;
+use crate::cli::Context;
+use crate::cli::arguments::flags::name_or_path;
+use crate::cli::arguments::parameters::PitchFlag;
 use crate::cli::commands::describe::described;
-use crate::cli::error::CliError;
+use crate::cli::commands::export;
 use crate::cli::failure::Failure;
-use crate::cli::input::shapes::Shelf;
-use crate::cli::output::charset::Charset;
 
-struct ListLine {
-    name: String,
-    origin: ShapeOrigin,
-    found: Result<ShapeSummary, String>,
+const EXAMPLES: &str = "\
+A library is a folder with one JSON file per shape. The shapes that come with
+the program are always listed; you can copy them, but not change them. A name
+has 1 to 64 letters, digits, spaces, '-', '_' or '.'; case does not matter.
+The folder is the one that --library names; if it is not given, the one in the
+variable TAXEL_LIBRARY, then the 'library' of the settings, then
+~/.local/share/taxel/library.
+
+Examples:
+  taxel library list
+  taxel library show washer
+  taxel library save ring imprint.txt
+  taxel library --library ./shapes check";
+
+/// List, show, save, delete and check stored shapes
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct LibraryCommand {
+    #[command(subcommand)]
+    command: Act,
 }
 
-struct ShapeSummary {
-    written_name: Name,
-    columns: u8,
-    rows: u8,
-    na: u32,
-    pieces: usize,
-    holes: usize,
+#[derive(Debug, Subcommand)]
+enum Act {
+    List(List),
+    Show(Show),
+    Save(Save),
+    Delete(Delete),
+    Restore(Restore),
+    Path(Folder),
+    Check(Check),
 }
 
-impl ListLine {
-    /// Reads a shape; None if another program has deleted it since the folder was listed.
-    fn of(library: &Library, entry: LibraryEntry) -> Option<Self> {
-        let found = match library.load(&entry.name) {
-            Ok(loaded) => Ok(ShapeSummary::of(loaded)),
-            Err(LibraryError::Unknown(_)) => return None,
-            Err(error) => Err(shortened_message(&error.to_string())),
-        };
-        Some(Self {
-            found,
-            name: entry.name,
-            origin: entry.origin,
-        })
-    }
-
-    fn origin(&self) -> &'static str {
-        match (&self.found, self.origin) {
-            (Err(_), _) => "broken",
-            (_, ShapeOrigin::Own) => "own",
-            (_, ShapeOrigin::Shipped) => "shipped",
+impl LibraryCommand {
+    pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
+        match self.command {
+            Act::List(command) => command.run(cx),
+            Act::Show(command) => command.run(cx),
+            Act::Save(command) => command.run(cx),
+            Act::Delete(command) => command.run(cx),
+            Act::Restore(command) => command.run(cx),
+            Act::Path(command) => command.run(cx),
+            Act::Check(command) => command.run(cx),
         }
     }
 }
 
-impl ShapeSummary {
-    fn of(loaded: LoadedShape) -> Self {
-        let shape = &loaded.shape;
-        let regions = regions(&shape.imprint);
-        let holes = regions
-            .iter()
-            .filter(|region| region.kind() == RegionKind::Hole);
-        let holes = holes.count();
-        Self {
-            written_name: loaded.written_name,
-            columns: shape.imprint.columns(),
-            rows: shape.imprint.rows(),
-            na: shape.imprint.count(),
-            pieces: regions.len() - holes,
-            holes,
-        }
-    }
-}
+const LIST_EXAMPLES: &str = "\
+Prints size (columns x rows), active taxels, pieces and holes. Files that cannot
+be read are listed as broken, with the reason.
 
-impl Serialize for ListLine {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("name", &self.name)?;
-        map.serialize_entry("origin", self.origin())?;
-        match &self.found {
-            Ok(summary) => {
-                map.serialize_entry("columns", &summary.columns)?;
-                map.serialize_entry("rows", &summary.rows)?;
-                map.serialize_entry("na", &summary.na)?;
-                map.serialize_entry("pieces", &summary.pieces)?;
-                map.serialize_entry("holes", &summary.holes)?;
-            }
-            Err(reason) => map.serialize_entry("error", reason)?,
-        }
-        map.end()
-    }
-}
+Examples:
+  taxel library list
+  taxel library list --json";
 
-fn lines(library: &Library) -> Result<Vec<ListLine>, CliError> {
-    let entries = library.list()?;
-    let line = |entry| ListLine::of(library, entry);
-    Ok(entries.into_par_iter().filter_map(line).collect())
-}
-
-pub(crate) fn missing(shelf: &Shelf) -> Option<String> {
-    let folder = shelf.missing_folder()?.display();
-    Some(format!(
-        "warning: {folder} does not exist; it is made when a shape is saved"
-    ))
-}
-
-pub(crate) fn list(shelf: &Shelf, as_json: bool, charset: Charset) -> Result<String, CliError> {
-    let lines = lines(&shelf.readable())?;
-    if as_json {
-        return Ok(json::ascii(&lines) + "\n");
-    }
-    let names = lines.iter().map(|line| &*line.name);
-    let column = charset.column(iter::once("name").chain(names));
-    let mut text = format!(
-        "{}  origin   {:>7}   NA  pieces  holes\n",
-        column[0], "size"
-    );
-    for (line, name) in lines.iter().zip(&column[1..]) {
-        // Cannot fail: the text is kept in memory.
-        let _ = write!(text, "{name}  {:<7}  ", line.origin());
-        let _ = match &line.found {
-            Ok(summary) => {
-                let size = format!("{} × {}", summary.columns, summary.rows);
-                let size = charset.line(&size);
-                let (na, pieces, holes) = (summary.na, summary.pieces, summary.holes);
-                writeln!(text, "{size:>7} {na:>4}  {pieces:>6}  {holes:>5}")
-            }
-            Err(reason) => writeln!(text, "{}", charset.line(reason)),
-        };
-    }
-    Ok(text)
-}
-
-pub(crate) fn show(
-    shelf: &Shelf,
-    name: &str,
-    form: Form,
-    charset: Charset,
-) -> Result<String, CliError> {
-    let loaded = shelf.readable().load(name);
-    let shape = loaded.map_err(|error| shelf.refused(error))?.shape;
-    let (Form::Json(pitch) | Form::Table(pitch)) = form;
-    let is_json = matches!(form, Form::Json(_));
-    Ok(described(&Content::Shape(shape), is_json, pitch, charset))
-}
-
-/// Stores a shape of the library or of a file under another name. An imprint without a sensor gets one of its own
-/// size.
-pub(crate) fn save(
-    shelf: &Shelf,
-    name: Name,
-    existing: Existing,
-    what: &OsStr,
-) -> Result<String, CliError> {
-    let found = shelf.find(what);
-    let shape = match found.map_err(|error| in_order(error, what, name.as_str()))? {
-        Content::Shape(shape) => shape.renamed(name),
-        Content::Imprint(imprint) => StoredShape {
-            name,
-            sensor: Sensor::of_size(imprint.size()),
-            imprint,
-            source: None,
-        },
-    };
-    let name = shelf.save(&shape, existing)?;
-    Ok(format!("saved as {name}\n"))
-}
-
-/// Adds the right order of the arguments to the error, if a file was given in place of the name and the shape cannot
-/// be found.
-fn in_order(failure: Failure, what: &OsStr, file: &str) -> Failure {
-    if Path::new(what).exists() || !Path::new(file).is_file() {
-        return failure;
-    }
-    let (first, then) = (as_argument(&what.to_string_lossy()), as_argument(file));
-    failure.with_hint(format!(
-        "; the name comes first: taxel library save {first} {then}"
-    ))
-}
-
-pub(crate) fn delete(shelf: &Shelf, name: &str, charset: Charset) -> Result<String, CliError> {
-    let deleted = shelf.library()?.delete(name);
-    let name = deleted.map_err(|error| shelf.refused(error))?;
-    let hint = restoring(shelf, &name);
-    // A command whose characters are escaped, or whose folder is not UTF-8, cannot be typed.
-    let hint = hint.filter(|hint| charset.line(hint) == *hint);
-    let hint = hint.map_or(String::new(), |hint| format!("; to restore it: {hint}"));
-    Ok(charset.lines(&format!("deleted {name}{hint}\n")))
-}
-
-fn restoring(shelf: &Shelf, name: &str) -> Option<String> {
-    let mut command = shelf.library_command("restore")?;
-    // Otherwise a name with a dash would be taken for a flag.
-    command += if name.starts_with('-') { " -- " } else { " " };
-    Some(command + &as_argument(name))
-}
-
-pub(crate) fn restore(shelf: &Shelf, name: &str) -> Result<String, CliError> {
-    let restored = shelf.library()?.restore(Some(name));
-    let name = restored.map_err(|error| shelf.refused(error))?;
-    Ok(format!("restored {name}\n"))
+/// List all shapes
+#[derive(Debug, Args)]
+#[command(after_help = LIST_EXAMPLES)]
+struct List {
+    /// Print JSON, one line per answer
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Serialize)]
-#[serde(tag = "finding")]
-enum Finding {
-    #[serde(rename = "broken")]
-    Broken { name: String, reason: String },
-    #[serde(rename = "name")]
-    Name { name: String, reason: String },
-    #[serde(rename = "other file")]
-    OtherFile { path: String, reason: &'static str },
+struct Line {
+    name: String,
+    origin: &'static str,
+    #[serde(flatten)]
+    found: Found,
 }
 
-impl fmt::Display for Finding {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Broken { name, reason } => write!(f, "broken: {name}: {reason}"),
-            Self::Name { name, reason } => write!(f, "name: {name}: {reason}"),
-            Self::OtherFile { path, reason } => write!(f, "other file: {path}: {reason}"),
-        }
-    }
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Found {
+    Shape {
+        columns: u8,
+        rows: u8,
+        na: u32,
+        pieces: usize,
+        holes: usize,
+        /// The name inside the file, if it is another one.
+        #[serde(skip)]
+        other_name: Option<Name>,
+    },
+    Broken {
+        error: String,
+    },
 }
 
-fn unclear_names(lines: &[ListLine]) -> Vec<Finding> {
-    let mut findings = Vec::new();
-    let own = lines.iter().filter(|line| line.origin == ShapeOrigin::Own);
-    for line in own {
-        if let Ok(summary) = &line.found
-            && summary.written_name.as_str() != line.name
-        {
-            let written = &summary.written_name;
-            let reason = format!(
-                "the name inside the file is {:?}; the name of the file counts",
-                written.as_str()
-            );
-            let name = line.name.clone();
-            findings.push(Finding::Name { name, reason });
-        }
-    }
-    findings
-}
-
-/// Reads every shape, and looks for other files in the folder. Returns the report, a line for each finding or a JSON
-/// array of objects, and [`CliError::Shapes`] if a shape is damaged, to be reported after it.
-pub(crate) fn check(
-    shelf: &Shelf,
-    as_json: bool,
-    charset: Charset,
-) -> Result<(String, Result<(), CliError>), CliError> {
-    if let Some(folder) = shelf.missing_folder() {
-        // A script must not take a mistyped name, or a disk that is not there, for a sound library.
-        let name = folder.to_string_lossy().into_owned();
-        return Err(CliError::NoFolder { name });
-    }
-    let library = shelf.readable();
-    let lines = lines(&library)?;
-    let shapes = lines.len();
-    let names = unclear_names(&lines);
-    let broken = lines.into_iter().filter_map(|line| {
-        let (name, reason) = (line.name, line.found.err()?);
-        Some(Finding::Broken { name, reason })
-    });
-    let mut findings: Vec<Finding> = broken.collect();
-    let broken = findings.len();
-    findings.extend(names);
-    let foreign = library.foreign_files()?;
-    findings.extend(foreign.into_iter().map(|path| Finding::OtherFile {
-        path: path.display().to_string(),
-        reason: "not a shape: its name is not NAME.json",
-    }));
-    let text = if as_json {
-        json::ascii(&findings) + "\n"
-    } else {
-        let lines = findings.iter().map(Finding::to_string);
-        let whole = (broken == 0).then(|| format!("{shapes} shapes, all intact"));
-        let lines = lines.chain(whole);
-        lines
-            .map(|line| charset.line(&line).into_owned() + "\n")
-            .collect()
+/// Reads a shape; None if another program has deleted it since the folder was listed.
+fn line(library: &Library, entry: LibraryEntry) -> Option<Line> {
+    let own = match entry.origin {
+        ShapeOrigin::Own => "own",
+        ShapeOrigin::Shipped => "shipped",
     };
-    let result = match broken {
-        0 => Ok(()),
-        _ => Err(CliError::Shapes { broken, shapes }),
+    let (origin, found) = match library.load(&entry.name) {
+        Ok(loaded) => {
+            let imprint = &loaded.shape.imprint;
+            let regions = regions(imprint);
+            let kinds = regions.iter().map(|region| region.kind());
+            let holes = kinds.filter(|kind| *kind == RegionKind::Hole).count();
+            let name = loaded.written_name;
+            let found = Found::Shape {
+                columns: imprint.columns(),
+                rows: imprint.rows(),
+                na: imprint.count(),
+                pieces: regions.len() - holes,
+                holes,
+                other_name: Some(name).filter(|name| name.as_str() != entry.name && own == "own"),
+            };
+            (own, found)
+        }
+        Err(LibraryError::Unknown(_)) => return None,
+        Err(error) => {
+            let error = shortened_message(&error.to_string());
+            ("broken", Found::Broken { error })
+        }
     };
-    Ok((text, result))
+    let name = entry.name;
+    Some(Line {
+        name,
+        origin,
+        found,
+    })
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+fn lines(library: &Library) -> Result<Vec<Line>, Failure> {
+    let entries = library.list()?.into_par_iter();
+    Ok(entries.filter_map(|entry| line(library, entry)).collect())
+}
 
-    #[test]
-    fn a_shape_that_is_deleted_meanwhile_is_not_listed() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let library = Library::open(folder.path().to_owned());
-        let entry = |name: &str| LibraryEntry {
-            name: name.to_owned(),
-            origin: ShapeOrigin::Own,
+impl List {
+    fn run(self, cx: &Context) -> Result<(), Failure> {
+        if let Some(folder) = cx.shelf.missing_folder() {
+            let folder = folder.display();
+            cx.note(&format!("warning: {folder} {NOT_THERE}"));
+        }
+        let lines = lines(&cx.shelf.readable())?;
+        if self.json {
+            return cx.print(&(json::ascii(&lines) + "\n"));
+        }
+        let names = iter::once("name").chain(lines.iter().map(|line| &*line.name));
+        let names = cx.charset.column(names);
+        let mut text = format!("{}  origin      size   NA  pieces  holes\n", names[0]);
+        for (line, name) in lines.iter().zip(&names[1..]) {
+            text += &format!("{name}  {:<7}  ", line.origin);
+            text += &match &line.found {
+                Found::Shape {
+                    columns,
+                    rows,
+                    na,
+                    pieces,
+                    holes,
+                    ..
+                } => {
+                    let size = format!("{columns} × {rows}");
+                    format!("{size:>7} {na:>4}  {pieces:>6}  {holes:>5}\n")
+                }
+                Found::Broken { error } => format!("{}\n", cx.charset.line(error)),
+            };
+        }
+        cx.print(&text)
+    }
+}
+
+const NOT_THERE: &str = "does not exist; it is made when a shape is saved";
+
+const SHOW_EXAMPLES: &str = "\
+Examples:
+  taxel library show washer
+  taxel library show \"my nut\" --pitch 2.5
+  taxel library show key --json";
+
+/// Show a shape and describe it
+#[derive(Debug, Args)]
+#[command(after_help = SHOW_EXAMPLES)]
+struct Show {
+    /// Name of the shape
+    #[arg(value_parser = Name::new)]
+    name: Name,
+    #[command(flatten)]
+    pitch: PitchFlag,
+    /// Print JSON, one line per answer
+    #[arg(long)]
+    json: bool,
+}
+
+impl Show {
+    fn run(self, cx: &Context) -> Result<(), Failure> {
+        let pitch = self.pitch.pitch(&cx.settings)?;
+        let loaded = cx.shelf.readable().load(self.name.as_str());
+        let shape = loaded.map_err(|error| cx.shelf.refused(error))?.shape;
+        let content = Content::Shape(shape);
+        cx.print(&described(&content, self.json, pitch, cx.charset))
+    }
+}
+
+const SAVE_EXAMPLES: &str = "\
+A file holds a stored shape or an imprint. If a stored shape and a file have the
+same name, taxel uses the shape, so you can copy a shape.
+
+Examples:
+  taxel library save ring imprint.txt
+  taxel library save \"my washer\" washer
+  printf '.##.\\n#..#\\n.##.\\n' | taxel library save ring - --force";
+
+/// Store a shape under a name
+#[derive(Debug, Args)]
+#[command(after_help = SAVE_EXAMPLES)]
+struct Save {
+    /// Name to store it under
+    #[arg(value_parser = Name::new)]
+    name: Name,
+    /// Shape of the library, or file; '-' for standard input
+    #[arg(value_name = "NAME|FILE", value_parser = name_or_path())]
+    what: OsString,
+    /// Replace an existing shape of this name
+    #[arg(long)]
+    force: bool,
+}
+
+impl Save {
+    /// Stores a shape of the library or of a file under another name. An imprint without a sensor gets one of its own
+    /// size.
+    fn run(self, cx: &Context) -> Result<(), Failure> {
+        let shape = match cx.shelf.find(&self.what)? {
+            Content::Shape(shape) => shape.renamed(self.name),
+            Content::Imprint(imprint) => StoredShape {
+                name: self.name,
+                sensor: Sensor::of_size(imprint.size()),
+                imprint,
+                source: None,
+            },
         };
-        assert!(ListLine::of(&library, entry("gone")).is_none());
-        std::fs::write(folder.path().join("bad.json"), "{").expect("written");
-        assert!(ListLine::of(&library, entry("bad")).is_some());
+        let existing = export::replacing(self.force);
+        let name = cx.shelf.save(&shape, existing)?;
+        cx.print(&format!("saved as {name}\n"))
+    }
+}
+
+const DELETE_EXAMPLES: &str = "\
+The last 50 deleted shapes are kept.
+
+Examples:
+  taxel library delete ring
+  taxel library restore ring";
+
+/// Move a shape to the trash
+#[derive(Debug, Args)]
+#[command(after_help = DELETE_EXAMPLES)]
+struct Delete {
+    /// Name of the shape
+    #[arg(value_parser = Name::new)]
+    name: Name,
+}
+
+impl Delete {
+    fn run(self, cx: &Context) -> Result<(), Failure> {
+        let library = cx.shelf.library();
+        let deleted = library.and_then(|library| library.delete(self.name.as_str()));
+        let name = deleted.map_err(|error| cx.shelf.refused(error))?;
+        // Otherwise a name with a dash would be taken for a flag.
+        let dashes = if name.starts_with('-') { "-- " } else { "" };
+        let restore = cx.shelf.library_command("restore");
+        let restore = restore.map(|words| format!("{words} {dashes}{}", as_argument(&name)));
+        // A command whose characters are escaped cannot be typed.
+        let hint = restore.filter(|restore| cx.charset.line(restore) == *restore);
+        let hint = hint.map_or(String::new(), |hint| format!("; to restore it: {hint}"));
+        cx.print(&format!("deleted {name}{hint}\n"))
+    }
+}
+
+const RESTORE_EXAMPLES: &str = "\
+If several shapes of that name were deleted, the last one is restored.
+
+Examples:
+  taxel library restore ring";
+
+/// Restore a deleted shape
+#[derive(Debug, Args)]
+#[command(after_help = RESTORE_EXAMPLES)]
+struct Restore {
+    /// Name of the shape
+    #[arg(value_parser = Name::new)]
+    name: Name,
+}
+
+impl Restore {
+    fn run(self, cx: &Context) -> Result<(), Failure> {
+        let library = cx.shelf.library();
+        let restored = library.and_then(|library| library.restore(Some(self.name.as_str())));
+        let name = restored.map_err(|error| cx.shelf.refused(error))?;
+        cx.print(&format!("restored {name}\n"))
+    }
+}
+
+const PATH_EXAMPLES: &str = "\
+Examples:
+  taxel library path
+  ls \"$(taxel library path)\"";
+
+/// Print the library's folder
+#[derive(Debug, Args)]
+#[command(after_help = PATH_EXAMPLES)]
+struct Folder {}
+
+impl Folder {
+    /// Prints the path byte for byte, so that other programs find the folder, but escaped on a terminal.
+    fn run(self, cx: &Context) -> Result<(), Failure> {
+        let library = cx
+            .shelf
+            .library()
+            .map_err(|error| cx.shelf.refused(error))?;
+        let folder = library.folder();
+        if io::stdout().is_terminal() {
+            return cx.print(&format!("{}\n", cx.charset.line(&folder.to_string_lossy())));
+        }
+        cx.write(&[folder.as_os_str().as_encoded_bytes(), b"\n"].concat())
+    }
+}
+
+const CHECK_EXAMPLES: &str = r#"Reads every shape and lists broken ones, shapes whose file holds another name,
+and other files in the folder. The exit status is 1 if a shape is broken, or if
+--library names a folder that does not exist. --json prints an array on one
+line, with an object for each finding:
+  {"finding":"broken","name":"ring","reason":"..."}
+  {"finding":"name","name":"Ring","reason":"..."}
+  {"finding":"other file","path":"shapes/notes.txt","reason":"..."}
+
+Examples:
+  taxel library check
+  taxel library check --json
+  taxel library check --library ./shapes"#;
+
+/// Find broken shapes and stray files
+#[derive(Debug, Args)]
+#[command(after_help = CHECK_EXAMPLES)]
+struct Check {
+    /// Print JSON, one line per answer
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Finding {
+    finding: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    path: Option<String>,
+    reason: String,
+}
+
+impl Check {
+    /// Reads every shape, and looks for other files in the folder. A damaged shape is a failure.
+    fn run(self, cx: &Context) -> Result<(), Failure> {
+        if let Some(folder) = cx.shelf.missing_folder() {
+            // A script must not take a mistyped name, or a disk that is not there, for a sound library.
+            return Err(Failure::new(format!("{} {NOT_THERE}", folder.display())));
+        }
+        let library = cx.shelf.readable();
+        let lines = lines(&library)?;
+        let shapes = lines.len();
+        let (mut findings, mut names) = (Vec::new(), Vec::new());
+        for line in lines {
+            let name = Some(line.name);
+            match line.found {
+                Found::Broken { error } => findings.push(Finding {
+                    finding: "broken",
+                    name,
+                    path: None,
+                    reason: error,
+                }),
+                Found::Shape { other_name, .. } => names.extend(other_name.map(|other| Finding {
+                    finding: "name",
+                    name,
+                    path: None,
+                    reason: format!(
+                        "the name inside the file is {:?}; the name of the file counts",
+                        other.as_str()
+                    ),
+                })),
+            }
+        }
+        let broken = findings.len();
+        findings.extend(names);
+        findings.extend(library.foreign_files()?.into_iter().map(|path| Finding {
+            finding: "other file",
+            name: None,
+            path: Some(path.display().to_string()),
+            reason: "not a shape: its name is not NAME.json".to_owned(),
+        }));
+        if self.json {
+            cx.print(&(json::ascii(&findings) + "\n"))?;
+        } else {
+            for found in &findings {
+                let place = found.name.as_ref().or(found.path.as_ref());
+                let place = cx.charset.line(place.map_or("", String::as_str));
+                let (what, reason) = (found.finding, cx.charset.line(&found.reason));
+                cx.print(&format!("{what}: {place}: {reason}\n"))?;
+            }
+        }
+        if broken > 0 {
+            let text = format!("{broken} of {shapes} shapes cannot be read");
+            return Err(Failure::new(text));
+        }
+        if self.json {
+            return Ok(());
+        }
+        cx.print(&format!("{shapes} shapes, all intact\n"))
     }
 }

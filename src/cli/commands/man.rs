@@ -9,10 +9,9 @@ use taxel_files::formats::value::counted;
 use taxel_files::storage::Existing;
 
 use crate::cli::Context;
-use crate::cli::arguments::definitions;
-use crate::cli::arguments::help::EXAMPLES as PROGRAM;
 use crate::cli::commands::export;
 use crate::cli::failure::{Failure, Named};
+use crate::cli::program::{self, EXAMPLES as PROGRAM};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -57,7 +56,7 @@ pub(crate) struct Man {
 
 impl Man {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
-        let mut program = definitions::all()
+        let mut program = program::definition()
             .after_help(format!("{PROGRAM}{ENVIRONMENT_AND_FILES}"))
             .disable_help_subcommand(true);
         program.build();
