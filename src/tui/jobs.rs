@@ -26,7 +26,9 @@ use taxel_core::lock::try_locked;
 use taxel_core::progress::{Progress, stop_if};
 use taxel_files::formats::StoredShape;
 use taxel_files::formats::file::system_reason;
-use taxel_files::storage::{Expected, Journal, Library, LibraryError, ModelCache, Orphan};
+use taxel_files::storage::{
+    Expected, FileError, Journal, Library, LibraryError, ModelCache, Orphan,
+};
 use tempfile::TempDir;
 
 use crate::tui::app::change::refuse;
@@ -123,7 +125,6 @@ enum Asker {
     NewPage,
     /// The page that is on top of this many.
     Page(usize),
-    Nobody,
 }
 
 pub struct Jobs {
@@ -136,7 +137,9 @@ pub struct Jobs {
     /// What is remembered from run to run; None if nothing is.
     pub(crate) reminders: Option<Reminders>,
     pub(crate) workers: Workers,
-    disk: DiskWorker,
+    /// The disk's thread, once something was asked of it.
+    disk: Option<(Sender<DiskWork>, JoinHandle<()>)>,
+    keeps_unsaved: bool,
     pending: VecDeque<Pending>,
     answers: VecDeque<(Asker, Answer)>,
     posted: Receiver<Posted>,
@@ -162,9 +165,7 @@ impl Jobs {
         let mut jobs = Self::for_script(library.clone());
         jobs.orphans = Orphan::all(&library);
         jobs.reminders = Some(Reminders::of(&library));
-        if let DiskWorker::Here(worker) = &mut jobs.disk {
-            worker.journal = Some(UnsavedJournal::new(&library, jobs.post.clone()));
-        }
+        jobs.keeps_unsaved = true;
         jobs
     }
 
@@ -181,11 +182,8 @@ impl Jobs {
             adopted: Vec::new(),
             reminders: None,
             workers: Workers::with(ModelStore::beside(&library)),
-            disk: DiskWorker::Here(Disk {
-                library: library.clone(),
-                journal: None,
-                post: post.clone(),
-            }),
+            disk: None,
+            keeps_unsaved: false,
             library,
             pending: VecDeque::new(),
             answers: VecDeque::new(),
@@ -241,8 +239,6 @@ impl Jobs {
             post.answer(|app| crate::tui::app::update::on_worker(app, event));
         };
         self.workers.post_to(Arc::new(events));
-        let disk = std::mem::replace(&mut self.disk, DiskWorker::Ended);
-        self.disk = disk.on_thread(&self.post);
         self
     }
 
@@ -307,7 +303,30 @@ impl Jobs {
     fn ask(&mut self, what: String, of: Asker, job: DiskJob) {
         let since = Instant::now();
         self.pending.push_back(Pending { what, since, of });
-        self.disk.send(DiskWork::Job(job));
+        self.send(DiskWork::Job(job));
+        // Without threads for the rest, an answer is there before the next key.
+        while self.post.wake.is_none()
+            && !self.pending.is_empty()
+            && let Ok(posted) = self.posted.recv()
+        {
+            self.receive(posted);
+        }
+    }
+
+    fn send(&mut self, work: DiskWork) {
+        let (send, _) = self.disk.get_or_insert_with(|| {
+            let disk = Disk {
+                library: self.library.clone(),
+                journal: self
+                    .keeps_unsaved
+                    .then(|| UnsavedJournal::new(&self.library)),
+                post: self.post.clone(),
+            };
+            let (send, receive) = channel();
+            (send, std::thread::spawn(move || disk.run(&receive)))
+        });
+        // The thread ends only after this end of the channel is dropped.
+        let _ = send.send(work);
     }
 
     /// Begins long work in place of what is in the slot.
@@ -409,7 +428,6 @@ impl Jobs {
         match posted {
             Posted::Disk(answer) => {
                 let of = self.pending.pop_front().map(|request| request.of);
-                let of = of.filter(|of| *of != Asker::Nobody);
                 self.answers.extend(of.map(|of| (of, answer)));
             }
             Posted::Job(slot, number, is_last, answer) => {
@@ -441,7 +459,7 @@ impl Jobs {
         let own = |request: &&mut Pending| request.of == Asker::Page(pages);
         let mut first = None;
         for request in self.pending.iter_mut().filter(own) {
-            request.of = Asker::Nobody;
+            request.of = Asker::Page(usize::MAX);
             first.get_or_insert_with(|| request.what.clone());
         }
         first
@@ -470,10 +488,10 @@ impl Jobs {
 
     /// Keeps this work in the journal, in place of what was kept before.
     pub(crate) fn keep(&mut self, works: Vec<UnsavedWork>) {
-        if works != self.kept || !self.adopted.is_empty() {
+        if self.keeps_unsaved && (works != self.kept || !self.adopted.is_empty()) {
             self.kept.clone_from(&works);
             let adopted = std::mem::take(&mut self.adopted);
-            self.disk.send(DiskWork::Keep(works, adopted));
+            self.send(DiskWork::Keep(works, adopted));
         }
     }
 
@@ -500,7 +518,7 @@ impl Jobs {
         }
         let jobs = &mut app.jobs;
         let (done, written) = channel();
-        jobs.disk.send(DiskWork::Flush(done));
+        jobs.send(DiskWork::Flush(done));
         let time = end.saturating_duration_since(Instant::now());
         let is_kept = written.recv_timeout(time).unwrap_or(false);
         let why = if jobs.library.waits_for_lock() {
@@ -530,7 +548,10 @@ impl Drop for Jobs {
         }
         let threads = self.slots.drain().filter_map(|(_, running)| running.thread);
         threads.for_each(|thread| wait_until_finished(&thread, end));
-        self.disk.end();
+        if let Some((send, thread)) = self.disk.take() {
+            drop(send);
+            wait_until_finished(&thread, Instant::now() + PATIENCE);
+        }
     }
 }
 
@@ -614,56 +635,6 @@ enum DiskWork {
     Flush(Sender<bool>),
 }
 
-enum DiskWorker {
-    Here(Disk),
-    Thread(Sender<DiskWork>, JoinHandle<()>),
-    Ended,
-}
-
-impl DiskWorker {
-    fn on_thread(self, post: &Post) -> Self {
-        let Self::Here(mut disk) = self else {
-            return self;
-        };
-        disk.post = post.clone();
-        if let Some(journal) = &mut disk.journal {
-            journal.post = post.clone();
-        }
-        let (send, receive) = channel();
-        // Once the program runs, it needs this thread; the system gives one to each program.
-        match start(move || disk.run(&receive)) {
-            Ok(thread) => Self::Thread(send, thread),
-            Err(reason) => {
-                post.send(Posted::Other(refusal(reason)));
-                Self::Ended
-            }
-        }
-    }
-
-    fn send(&mut self, work: DiskWork) {
-        match self {
-            Self::Here(disk) => disk.take(work),
-            // The thread ends only after this end of the channel is dropped.
-            Self::Thread(send, _) => drop(send.send(work)),
-            Self::Ended => {}
-        }
-    }
-
-    /// Writes the journal, if the disk answers.
-    fn end(&mut self) {
-        match std::mem::replace(self, Self::Ended) {
-            Self::Here(mut disk) => {
-                disk.write_journal();
-            }
-            Self::Thread(send, thread) => {
-                drop(send);
-                wait_until_finished(&thread, Instant::now() + PATIENCE);
-            }
-            Self::Ended => {}
-        }
-    }
-}
-
 struct Disk {
     library: Library,
     /// None if no unsaved work is kept.
@@ -696,15 +667,17 @@ impl Disk {
         match work {
             DiskWork::Job(job) => {
                 // It may take long, and the program may die meanwhile.
-                if self.post.wake.is_some() {
-                    self.write_journal();
-                }
+                self.write_journal();
                 let answer = caught(|| job(&self.library)).unwrap_or_else(refusal);
                 self.post.send(Posted::Disk(answer));
             }
             DiskWork::Keep(works, adopted) => {
-                if let Some(journal) = &mut self.journal {
-                    journal.note(works, adopted);
+                let at_once = self
+                    .journal
+                    .as_mut()
+                    .is_some_and(|journal| journal.note(works, adopted));
+                if at_once {
+                    self.write_journal();
                 }
             }
             DiskWork::Flush(done) => {
@@ -715,8 +688,18 @@ impl Disk {
         }
     }
 
+    /// Returns true if the unsaved work is on the disk.
     fn write_journal(&mut self) -> bool {
-        self.journal.as_mut().is_none_or(UnsavedJournal::write)
+        let written = self.journal.as_mut().map_or(Ok(()), UnsavedJournal::write);
+        let is_new = self
+            .journal
+            .as_mut()
+            .is_some_and(|journal| journal.is_news(&written));
+        if let (true, Err(error)) = (is_new, &written) {
+            let reason = format!("unsaved work cannot be kept: {error}");
+            self.post.answer(|app| refuse(app, reason));
+        }
+        written.is_ok()
     }
 }
 
@@ -729,57 +712,51 @@ struct UnsavedJournal {
     /// When to write it; None if it is written.
     due: Option<Instant>,
     adopted: Vec<Orphan>,
-    post: Post,
-    /// Whether the present error has been reported: once is enough.
-    is_reported: bool,
+    has_failed: bool,
 }
 
 impl UnsavedJournal {
-    fn new(library: &Library, post: Post) -> Self {
+    fn new(library: &Library) -> Self {
         Self {
             journal: Journal::new(library),
             works: Vec::new(),
             written: Vec::new(),
             due: None,
             adopted: Vec::new(),
-            post,
-            is_reported: false,
+            has_failed: false,
         }
     }
 
-    fn note(&mut self, works: Vec<UnsavedWork>, adopted: Vec<Orphan>) {
+    /// Returns true if it is to be written at once: nothing can be lost any more, or work must not be offered twice.
+    fn note(&mut self, works: Vec<UnsavedWork>, adopted: Vec<Orphan>) -> bool {
         let soon = Instant::now() + GATHER;
         self.due = Some(self.due.map_or(soon, |due| due.min(soon)));
-        // Without unsaved work, nothing can be lost; and offered work is not to be offered twice.
-        let at_once = works.is_empty() || !adopted.is_empty();
         self.works = works;
+        let at_once = self.works.is_empty() || !adopted.is_empty();
         self.adopted.extend(adopted);
-        if at_once {
-            self.write();
-        }
+        at_once
     }
 
-    /// Brings the journal up to date, also if someone has removed it. Returns true if it is.
-    fn write(&mut self) -> bool {
+    /// Brings the journal up to date, also if someone has removed it.
+    fn write(&mut self) -> Result<(), FileError> {
         if self.written != self.works || !self.journal.is_intact() {
-            let shapes = self.works.iter().map(UnsavedWork::to_shape).collect();
-            if let Err(error) = self.journal.keep(shapes) {
-                self.due = Some(Instant::now() + RETRY);
-                if !std::mem::replace(&mut self.is_reported, true) {
-                    let reason = format!("unsaved work cannot be kept: {error}");
-                    self.post.send(Posted::Other(refusal(reason)));
-                }
-                return false;
-            }
+            self.due = Some(Instant::now() + RETRY);
+            let shapes = self.works.iter().map(UnsavedWork::to_shape);
+            self.journal.keep(shapes.collect())?;
             self.written.clone_from(&self.works);
         }
         self.due = None;
-        self.is_reported = false;
         // What cannot be removed is offered again: better twice than never.
         for orphan in self.adopted.drain(..) {
             orphan.discard();
         }
-        true
+        Ok(())
+    }
+
+    /// An error is reported once.
+    fn is_news(&mut self, written: &Result<(), FileError>) -> bool {
+        let before = std::mem::replace(&mut self.has_failed, written.is_err());
+        written.is_err() && !before
     }
 }
 

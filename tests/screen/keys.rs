@@ -236,12 +236,12 @@ fn a_shape_is_moved_and_turned() {
         ],
     );
     shows("g", &["nothing to move"]);
-    shows("<Space>>", &["a drawing cannot be moved"]);
+    shows("<Space>>", &["a drawing has no position"]);
     for keys in ["<lt>", "g", "+", "z", "<S-Right>", ":turn 30<Enter>"] {
         let stored = format!("lkey<Enter>{keys}");
         shows(
             &stored,
-            &["a stored imprint has no position: press p to place it as a picture"],
+            &["a drawing has no position; p places a saved one"],
         );
     }
     for key in ["c", "o"] {
@@ -332,33 +332,16 @@ fn quitting_asks_if_work_would_be_lost() {
     }
     let rectangle = "An earlier rectangle is not saved; the history (H) has it.";
     shows("fr<Enter>lgear<Enter>q", &[rectangle, "n: stay)"]);
-    // So would one that was undone until the matrix was empty, or that only redo has.
-    let later = "A later drawing is not saved; the history (H) has it.";
-    for undone in [
-        "<Space><Right><Space>uuq",
-        "<Space>nuuq",
-        "<Space>H<Home><Enter>q",
-    ] {
-        shows(undone, &[later, "Quit anyway?"]);
-    }
-    shows(
-        "<Space>n<Right><Space>lwasher<Enter>q",
-        &["2 shapes are not saved; the history (H) has them."],
-    );
-    shows(
-        "<Space>n<Space>uuq",
-        &["The imprint and a later drawing are not saved; the history (H) has the"],
-    );
     shows(
         "<Space>n<Space>n<Right><Space>q",
-        &["The imprint and 2 other shapes are not saved; the history (H) has them."],
+        &["The imprint and 2 earlier shapes are not saved; the history (H) has them."],
     );
     // Both may be unsaved, and saving one does not discard the other.
     let both = "<Space>n<Right><Space>q";
     shows(
         both,
         &[
-            "The imprint and an earlier drawing are not saved; the history (H) has the",
+            "The imprint and 1 earlier shape are not saved; the history (H) has them.",
             "s: save first)",
         ],
     );
@@ -375,7 +358,9 @@ fn quitting_asks_if_work_would_be_lost() {
         "<Space><Space>nq",
         "<Space>saa<Enter>nq",
         "<Space><Space>nuuq",
-        // The next change gives up what was undone before it: redo no longer has it.
+        // What was undone was given up.
+        "<Space><Right><Space>uuq",
+        "<Space>H<Home><Enter>q",
         "<Space>ulwasher<Enter>q",
         // What is undone on a shape that stays is given up, as in an editor.
         "lwasher<Enter><Space>uq",

@@ -207,10 +207,9 @@ fn dropped(app: &App, document: &Document) -> u32 {
 fn say_dropped(app: &mut App, dropped: u32) {
     if dropped > 0 {
         let taxels = counted(dropped, "taxel");
-        let (were, them) = if dropped == 1 {
-            ("was", "it")
-        } else {
-            ("were", "them")
+        let (were, them) = match dropped {
+            1 => ("was", "it"),
+            _ => ("were", "them"),
         };
         let undo = app.key_of(&action::UNDO);
         inform(
@@ -220,25 +219,15 @@ fn say_dropped(app: &mut App, dropped: u32) {
     }
 }
 
-/// A drawing has no position to change, but once it is stored, it can be placed as a picture.
+/// Says that only a figure or a picture can be moved, and how there is one.
 fn refuse_to_move(app: &mut App) {
-    if app.loaded_imprint().is_some() {
-        let place = app.key_of(&action::PICTURE);
-        let text = format!(
-            "a stored imprint has no position: press {place} to place it as a picture, then move it"
-        );
-        return refuse(app, text);
-    }
-    if !app.reading().imprint.is_empty() {
-        let (save, place) = (app.key_of(&action::SAVE), app.key_of(&action::PICTURE));
-        let text = format!("a drawing cannot be moved: save it ({save}), then place it ({place})");
-        return refuse(app, text);
-    }
     let (figure, picture) = (app.key_of(&action::FIGURE), app.key_of(&action::PICTURE));
-    refuse(
-        app,
-        format!("nothing to move: press {figure} for a figure or {picture} for a stored shape"),
-    );
+    let text = if app.reading().imprint.is_empty() {
+        format!("nothing to move: {figure} places a figure, {picture} a stored shape")
+    } else {
+        format!("a drawing has no position; {picture} places a saved one")
+    };
+    refuse(app, text);
 }
 
 /// Returns the source on the matrix. If there is none, a notice says so.
@@ -279,13 +268,6 @@ pub(in crate::tui) fn turn(app: &mut App, clockwise: f64) {
 }
 
 pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
-    if app.history.present().source.is_none() && app.reading().imprint.is_empty() {
-        let picture = app.key_of(&action::PICTURE);
-        return refuse(
-            app,
-            format!("nothing to zoom: press {picture} for a stored shape"),
-        );
-    }
     let Some(source) = movable(app) else { return };
     let by = f64::from(direction) * app.step.length();
     let (Some(x), Some(y)) = (source.get(Parameter::ZoomX), source.get(Parameter::ZoomY)) else {

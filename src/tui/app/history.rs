@@ -38,18 +38,14 @@ impl DocumentOrigin {
 
     #[must_use]
     pub fn called(self, brought_by: impl Into<String>) -> Self {
-        Self {
-            brought_by: Some(brought_by.into()),
-            ..self
-        }
+        let brought_by = Some(brought_by.into());
+        Self { brought_by, ..self }
     }
 
     #[must_use]
     pub fn proposing(self, name: impl Into<String>) -> Self {
-        Self {
-            proposed: Some(name.into()),
-            ..self
-        }
+        let proposed = Some(name.into());
+        Self { proposed, ..self }
     }
 
     #[must_use]
@@ -76,113 +72,140 @@ pub struct StoredName {
 }
 
 #[derive(Clone, Debug)]
-struct Revision {
+struct State {
     document: Document,
     origin: usize,
+    /// The region that is chosen, also on the documents after it.
     chosen: Option<usize>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StatePlace {
-    Earlier,
-    Present,
-    Later,
-}
-
-/// A document of the history that would be lost with it.
-#[derive(Clone, Copy, Debug)]
-pub struct UnsavedState<'a> {
-    pub document: &'a Document,
-    pub origin: &'a DocumentOrigin,
-    pub place: StatePlace,
 }
 
 /// Going back to a state brings back its name too.
 #[derive(Clone, Debug)]
 pub struct History {
-    past: Vec<Revision>,
-    present: Revision,
-    future: Vec<Revision>,
-    /// While the last change can go on: the states that could be redone before it. They can be redone again if the
-    /// change comes to nothing.
-    future_before: Option<Vec<Revision>>,
-    pub(in crate::tui) origins: Vec<DocumentOrigin>,
+    states: Vec<State>,
+    present: usize,
+    /// Whether the last change can go on.
+    goes_on: bool,
+    pub(crate) origins: Vec<DocumentOrigin>,
 }
 
 impl History {
     pub fn new(document: Document) -> Self {
         let origins = vec![DocumentOrigin::of(&document)];
+        let (origin, chosen) = (0, None);
         Self {
-            past: Vec::new(),
-            present: Revision {
+            states: vec![State {
                 document,
-                origin: 0,
-                chosen: None,
-            },
-            future: Vec::new(),
-            future_before: None,
+                origin,
+                chosen,
+            }],
+            present: 0,
+            goes_on: false,
             origins,
         }
     }
 
+    fn state(&self) -> &State {
+        &self.states[self.present]
+    }
+
+    fn until_now(&self) -> &[State] {
+        &self.states[..=self.present]
+    }
+
     pub fn present(&self) -> &Document {
-        &self.present.document
+        &self.state().document
     }
 
     pub fn chosen(&self) -> Option<usize> {
-        self.present.chosen
+        self.state().chosen
     }
 
-    /// Chooses a region of the present document. It stays chosen on the documents after it.
     pub fn choose(&mut self, region: Option<usize>) {
-        self.present.chosen = region;
+        self.states[self.present].chosen = region;
+    }
+
+    pub(crate) fn origin_index(&self) -> usize {
+        self.state().origin
     }
 
     pub fn origin(&self) -> &DocumentOrigin {
-        // The index is in the list: only `begin` makes indices.
-        self.origins
-            .get(self.present.origin)
-            .unwrap_or(&self.origins[0])
+        &self.origins[self.origin_index()]
     }
 
-    /// Returns true if a document of this name was loaded or saved since the start of the program.
+    /// Whether a document of this name was loaded or saved since the start of the program.
     pub fn knows(&self, name: &str) -> bool {
-        let names = self.origins.iter().filter_map(|own| own.name.as_ref());
-        names
-            .map(|own| folded(&own.name))
-            .any(|own| own == folded(name))
+        let mut names = self.origins.iter().filter_map(|own| own.name.as_ref());
+        names.any(|own| folded(&own.name) == folded(name))
     }
 
+    /// The document with which the present one began.
     pub fn begun(&self) -> &Document {
-        let past = self.past.iter().rev();
-        let own = past.take_while(|state| state.origin == self.present.origin);
+        let own = self.until_now().iter().rev();
+        let own = own.take_while(|state| state.origin == self.origin_index());
         own.last().map_or(self.present(), |state| &state.document)
     }
 
     /// A change that changes nothing leaves no trace.
     pub fn push(&mut self, document: Document) {
-        if document != self.present.document {
-            self.replace(document, self.present.origin);
+        if document != *self.present() {
+            self.add(document, self.origin_index());
         }
     }
 
     pub fn begin(&mut self, document: Document, origin: DocumentOrigin) {
         self.origins.push(origin);
-        self.replace(document, self.origins.len() - 1);
+        self.add(document, self.origins.len() - 1);
     }
 
     /// Adds a document that is stored nowhere and comes from an earlier run. Drops the states before it if nothing is
     /// lost by that: undo would go back to them, and quitting there without a question would lose the document.
     pub fn resume(&mut self, document: Document, origin: DocumentOrigin) {
         self.begin(document, origin);
-        let is_earlier = |state: UnsavedState| state.place == StatePlace::Earlier;
-        if !self.unsaved().any(is_earlier) {
-            self.past.clear();
+        if self.unsaved().count() < 2 {
+            self.states.drain(..self.present);
+            self.present = 0;
         }
     }
 
-    pub(crate) fn origin_index(&self) -> usize {
-        self.present.origin
+    fn add(&mut self, document: Document, origin: usize) {
+        self.drop_empty_step();
+        let chosen = self.chosen();
+        self.present += 1;
+        self.states.truncate(self.present);
+        self.states.push(State {
+            document,
+            origin,
+            chosen,
+        });
+        self.goes_on = true;
+    }
+
+    /// Continues the last change, which stays one change; after undo and redo, this is a new change.
+    pub fn amend(&mut self, document: Document) {
+        if self.goes_on {
+            self.states[self.present].document = document;
+        } else {
+            self.push(document);
+        }
+    }
+
+    /// Whether the last change has come to nothing.
+    fn ends_in_empty_step(&self) -> bool {
+        match self.until_now() {
+            [.., before, now] if self.goes_on => {
+                before.document == now.document && before.origin == now.origin
+            }
+            _ => false,
+        }
+    }
+
+    fn drop_empty_step(&mut self) {
+        if self.ends_in_empty_step() {
+            self.states.remove(self.present);
+            self.present -= 1;
+            self.goes_on = false;
+        }
     }
 
     /// Notes that a document of that origin is stored now, so that it can be found again.
@@ -195,160 +218,82 @@ impl History {
 
     /// Notes that the stored shape of that name is gone: everything that came from it would be lost.
     pub fn removed(&mut self, name: &str) {
-        let gone = folded(name);
         for origin in &mut self.origins {
             let own = origin.name.as_ref();
             let own = own.filter(|stored| stored.owner == ShapeOrigin::Own);
-            if own.is_some_and(|stored| folded(&stored.name) == gone) {
+            if own.is_some_and(|stored| folded(&stored.name) == folded(name)) {
                 origin.name = None;
                 origin.saved = Document::empty(origin.saved.sensor);
             }
         }
     }
 
-    /// Returns the documents that would be lost, in the order of the history. Of the states of one origin, the last
-    /// one counts. Where the present document comes from the same origin, that one counts: what was undone on it was
-    /// given up. An empty matrix does not count as a state of a document, so what undo took off it would be lost.
-    pub fn unsaved(&self) -> impl Iterator<Item = UnsavedState<'_>> {
-        let present = &self.present;
-        let at = |place| move |state| (state, place);
-        let earlier = self.past.iter().map(at(StatePlace::Earlier));
-        let later = self.later().map(at(StatePlace::Later));
-        let now = [(present, StatePlace::Present)];
-        let mut states = earlier.chain(now).chain(later).peekable();
-        std::iter::from_fn(move || {
-            let (state, place) = states.next()?;
-            let next = states.peek().map(|(next, _)| next.origin);
-            Some((state, place, next != Some(state.origin)))
-        })
-        .filter(|(state, place, is_last)| match place {
-            StatePlace::Earlier => *is_last,
-            StatePlace::Present => true,
-            StatePlace::Later => {
-                *is_last && (state.origin != present.origin || present.document.is_empty())
-            }
-        })
-        .filter_map(|(state, place, _)| {
-            let (document, origin) = (&state.document, self.origins.get(state.origin)?);
-            origin.would_lose(document).then_some(UnsavedState {
-                document,
-                origin,
-                place,
-            })
-        })
-    }
-
-    fn later(&self) -> impl Iterator<Item = &Revision> {
-        let before = self.future_before.as_ref();
-        let future = before.filter(|_| self.last_step_is_empty());
-        future.unwrap_or(&self.future).iter().rev()
-    }
-
-    fn last_step_is_empty(&self) -> bool {
-        let Revision {
-            document, origin, ..
-        } = &self.present;
-        let last = self.past.last();
-        last.is_some_and(|past| past.document == *document && past.origin == *origin)
-    }
-
-    /// What could be redone before it can be redone again.
-    fn drop_empty_step(&mut self) {
-        if self.last_step_is_empty()
-            && let Some(future) = self.future_before.take()
-        {
-            self.past.pop();
-            self.future = future;
-        }
-    }
-
-    fn replace(&mut self, document: Document, origin: usize) {
-        self.drop_empty_step();
-        let chosen = self.present.chosen;
-        let state = Revision {
-            document,
-            origin,
-            chosen,
-        };
-        self.past.push(std::mem::replace(&mut self.present, state));
-        self.future_before = Some(std::mem::take(&mut self.future));
-    }
-
-    /// Continues the last change, which stays one change. If it came to nothing and was dropped, or after undo and
-    /// redo, this is a new change.
-    pub fn amend(&mut self, document: Document) {
-        match self.future_before {
-            Some(_) => self.present.document = document,
-            None => self.push(document),
-        }
+    /// The documents that would be lost, the present one last. Of the states of one origin the last one counts; what
+    /// was undone was given up.
+    pub fn unsaved(&self) -> impl Iterator<Item = (&Document, &DocumentOrigin)> {
+        let states = self.until_now();
+        let nexts = states.iter().skip(1).map(|state| Some(state.origin));
+        let last = states.iter().zip(nexts.chain([None]));
+        let last = last.filter(|(state, next)| *next != Some(state.origin));
+        let last = last.map(|(state, _)| (&state.document, &self.origins[state.origin]));
+        last.filter(|(document, origin)| origin.would_lose(document))
     }
 
     pub fn undo(&mut self) -> Option<String> {
         self.drop_empty_step();
-        let earlier = self.past.pop()?;
-        let undone = self.step(&earlier, &self.present);
-        let left = self.travel(earlier);
-        self.future.push(left);
+        let earlier = self.present.checked_sub(1)?;
+        let undone = self.step(earlier);
+        self.go_to(earlier);
         Some(undone)
     }
 
     pub fn can_undo(&self) -> bool {
-        let dropped = self.future_before.is_some() && self.last_step_is_empty();
-        self.past.len() > usize::from(dropped)
+        self.present > usize::from(self.ends_in_empty_step())
     }
 
     pub fn redo(&mut self) -> Option<String> {
         self.drop_empty_step();
-        let later = self.future.pop()?;
-        let redone = self.step(&self.present, &later);
-        let left = self.travel(later);
-        self.past.push(left);
+        let later = self.present + 1;
+        let redone = (later < self.states.len()).then(|| self.step(self.present))?;
+        self.go_to(later);
         Some(redone)
     }
 
     /// The region that was chosen there is chosen again; if none was, the choice stays.
-    fn travel(&mut self, mut state: Revision) -> Revision {
-        self.future_before = None;
-        state.chosen = state.chosen.or(self.present.chosen);
-        std::mem::replace(&mut self.present, state)
+    pub fn go_to(&mut self, step: usize) {
+        let chosen = self.chosen();
+        self.present = step.min(self.states.len() - 1);
+        self.goes_on = false;
+        let state = &mut self.states[self.present];
+        state.chosen = state.chosen.or(chosen);
     }
 
-    fn step(&self, from: &Revision, to: &Revision) -> String {
-        let origin = self.origins.get(to.origin);
-        let brought_by = origin.and_then(|origin| origin.brought_by.clone());
+    /// What led from this state to the next, in words.
+    fn step(&self, state: usize) -> String {
+        let (from, to) = (&self.states[state], &self.states[state + 1]);
+        let brought_by = self.origins[to.origin].brought_by.clone();
         let brought_by = brought_by.filter(|_| from.origin != to.origin);
         brought_by.unwrap_or_else(|| difference(&from.document, &to.document))
     }
 
     pub fn steps(&mut self) -> (Vec<String>, usize) {
         self.drop_empty_step();
-        let later = self.future.iter().rev();
-        let states = || self.past.iter().chain([&self.present]).chain(later.clone());
-        let steps = states().zip(states().skip(1));
-        let steps = steps.map(|(from, to)| self.step(from, to)).collect();
-        (steps, self.past.len())
+        let steps = (1..self.states.len()).map(|state| self.step(state - 1));
+        (steps.collect(), self.present)
     }
 
     pub fn start(&self) -> Option<&str> {
-        let oldest = self.past.first().unwrap_or(&self.present);
-        self.origins.get(oldest.origin)?.brought_by.as_deref()
+        self.origins[self.states[0].origin].brought_by.as_deref()
     }
 
     pub fn before(&self) -> Option<&Document> {
-        let past = self.past.iter().rev();
-        let mut others = past.filter(|state| state.document != self.present.document);
-        others.next().map(|state| &state.document)
+        let past = self.until_now().iter().rev().map(|state| &state.document);
+        let mut others = past.filter(|document| *document != self.present());
+        others.next()
     }
 
     pub fn after(&self, step: usize) -> Option<&Document> {
-        let later = self.future.iter().rev();
-        let mut states = self.past.iter().chain([&self.present]).chain(later);
-        states.nth(step).map(|state| &state.document)
-    }
-
-    pub fn go_to(&mut self, step: usize) {
-        while self.past.len() > step && self.undo().is_some() {}
-        while self.past.len() < step && self.redo().is_some() {}
+        self.states.get(step).map(|state| &state.document)
     }
 }
 

@@ -92,8 +92,7 @@ impl Page for Question {
                 }
             }
             Message::Save if self.saves_first => {
-                matrix::update::act(app, Message::Save);
-                app.quits_when_saved = true;
+                matrix::update::save(app, true);
             }
             Message::Save => {
                 let text = match self.prompt {

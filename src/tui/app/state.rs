@@ -136,6 +136,8 @@ pub(crate) struct Saving {
     pub(crate) shape: Box<StoredShape>,
     pub(crate) document: Document,
     pub(crate) origin: usize,
+    /// Whether the program ends once it is saved.
+    pub(crate) quits: bool,
 }
 
 pub struct App {
@@ -176,9 +178,6 @@ pub struct App {
     pub(in crate::tui) theme: Theme,
     pub(in crate::tui) keymap: Keymap,
     pub(in crate::tui) run_state: RunState,
-    /// Whether the program ends once the document is saved, because the user chose this at the question before
-    /// quitting.
-    pub(in crate::tui) quits_when_saved: bool,
     /// Each is named once.
     pub(in crate::tui) unknown_keys: Vec<Key>,
 }
@@ -216,7 +215,6 @@ impl App {
             theme: options.theme,
             keymap: Keymap::default(),
             run_state: RunState::Running,
-            quits_when_saved: false,
             unknown_keys: Vec::new(),
         }
     }
@@ -395,9 +393,6 @@ impl App {
     pub(in crate::tui) fn begin_action(&mut self) {
         self.notice = None;
         self.prompt = None;
-        if self.pages.is_empty() {
-            self.quits_when_saved = false;
-        }
         // A key came between press and release: the rest of the drag would change another document than the press
         // did.
         self.paint = None;

@@ -11,7 +11,7 @@ use taxel_files::storage::{Library, LibraryError, Orphan, UNNAMED, shipped};
 use crate::tui::app::change::{inform, refuse, resume};
 
 use crate::tui::app::document::{Document, Reading};
-use crate::tui::app::history::{DocumentOrigin, StatePlace, UnsavedState};
+use crate::tui::app::history::DocumentOrigin;
 use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, RunState};
 use crate::tui::explore::ranges::about;
@@ -37,43 +37,29 @@ impl UnsavedWork {
 }
 
 impl App {
-    /// Returns true if there is work on the matrix that would be lost.
+    /// Whether there is work on the matrix that would be lost.
     pub fn unsaved(&self) -> bool {
         self.history.origin().would_lose(self.history.present())
     }
 
-    pub(in crate::tui) fn is_being_saved(&self, document: &Document) -> bool {
-        self.saving.iter().any(|save| save.document == *document)
-    }
-
-    /// Returns the documents that are lost at the end unless the user stays, in the order of the history. A document
-    /// that is being saved is not: the end waits for it, and reports a failure.
-    pub(in crate::tui) fn lost_at_end(&self) -> impl Iterator<Item = UnsavedState<'_>> {
-        let unsaved = self.history.unsaved();
-        unsaved.filter(|state| !self.is_being_saved(state.document))
+    fn is_being_saved(&self, document: &Document) -> bool {
+        let saving = self.saving.as_ref();
+        saving.is_some_and(|saving| saving.document == *document)
     }
 
     /// Returns the work to keep in the journal: all unsaved documents, the one on the matrix last; what an open form
-    /// shows, because it may be accepted; the shapes that are being saved, because this may fail. After Quit, only the
-    /// latter, and those that could not be saved: everything else has been given up.
+    /// shows, because it may be accepted; the shape that is being saved, because this may fail. After Quit, only the
+    /// latter: everything else has been given up.
     pub fn unsaved_work(&self) -> Vec<UnsavedWork> {
         let (origin, shown) = (self.history.origin(), self.shown());
-        let (present, others): (Vec<_>, Vec<_>) =
-            (self.history.unsaved()).partition(|state| state.place == StatePlace::Present);
-        // The last one is written last, and so offered first.
-        let unsaved = others.into_iter().chain(present);
-        let own = unsaved.map(|state| (origin_name(state.origin), state.document));
-        let shown = origin.would_lose(shown).then_some(shown);
-        let previewed = shown.map(|shown| (origin_name(origin), shown));
-        let kept = own
-            .chain(previewed)
-            .filter(|_| self.run_state != RunState::Quit);
-        let saving = self
-            .saving
-            .iter()
-            .map(|save| (Some(save.shape.name.clone()), &save.document));
+        let previewed = origin.would_lose(shown).then_some((shown, origin));
+        let kept = self.history.unsaved().chain(previewed);
+        let kept = kept.filter(|_| self.run_state != RunState::Quit);
+        let kept = kept.map(|(document, origin)| (origin_name(origin), document));
+        // First, because the user has given it a name.
+        let saving = self.saving.iter();
+        let saving = saving.map(|save| (Some(save.shape.name.clone()), &save.document));
         let mut works: Vec<UnsavedWork> = Vec::new();
-        // First, because the user has given these a name.
         for (name, document) in saving.chain(kept) {
             if let Some(name) = name
                 && !works.iter().any(|work| work.document == *document)
@@ -96,10 +82,8 @@ fn origin_name(origin: &DocumentOrigin) -> Option<Name> {
         .ok()
 }
 
-/// Quits, after a question if work would be lost.
-/// The imprint on the matrix can be saved from the question; another shape must be brought back first, so there is no
-/// key for it, and the question names the key of the history. A shape that is being saved needs no question: the end
-/// waits for it, and reports a failure.
+/// Quits, after a question if work would be lost. A shape that is being saved needs no question: the end waits for it,
+/// and reports a failure.
 pub(in crate::tui) fn quit(app: &mut App) {
     let Some((what, lost)) = losses(app) else {
         app.run_state = RunState::Quit;
@@ -108,59 +92,43 @@ pub(in crate::tui) fn quit(app: &mut App) {
     let ends = recording(app).map_or(String::new(), |name| {
         format!("; the recording in {name} ends")
     });
-    let about = format!("{what}{ends}.");
+    let quit = |app: &mut App| app.run_state = RunState::Quit;
     let question = Question {
-        saves_first: can_save_first(app),
+        saves_first: app.unsaved()
+            && !app.is_being_saved(app.history.present())
+            && !app.reading().imprint.is_empty(),
         meanings: Some([lost, "stay"]),
-        ..Question::new(about, "Quit anyway?", |app| app.run_state = RunState::Quit)
+        ..Question::new(format!("{what}{ends}."), "Quit anyway?", quit)
     };
     app.open(question);
 }
 
 /// Returns what would be lost, in words, and the word for losing it; None if nothing would be.
 fn losses(app: &App) -> Option<(String, &'static str)> {
-    let is_present = |state: &UnsavedState| state.place == StatePlace::Present;
-    let (present, others): (Vec<_>, Vec<_>) = app.lost_at_end().partition(is_present);
+    let lost = app.history.unsaved().map(|(document, _)| document);
+    let lost = lost.filter(|document| !app.is_being_saved(document));
+    let (present, earlier): (Vec<_>, Vec<_>) =
+        lost.partition(|document| *document == app.history.present());
     let history = app.key_of(&action::HISTORY);
-    let what = match &others[..] {
-        [] if present.is_empty() => return None,
-        [] => "The imprint is not saved".to_owned(),
-        [one] => {
-            let kind = one.document.source.as_ref();
-            let kind = kind.map_or("drawing", Source::kind_name);
-            let place = match one.place {
-                StatePlace::Later => "a later",
-                StatePlace::Earlier | StatePlace::Present => "an earlier",
-            };
-            if present.is_empty() {
-                let place = place.replacen('a', "A", 1);
-                format!("{place} {kind} is not saved; the history ({history}) has it")
-            } else {
-                let what = format!("The imprint and {place} {kind} are not saved");
-                format!("{what}; the history ({history}) has the {kind}")
-            }
+    Some(match (&present[..], &earlier[..]) {
+        ([], []) => return None,
+        (_, []) => ("The imprint is not saved".to_owned(), "lose it"),
+        ([], [one]) => {
+            let kind = one.source.as_ref().map_or("drawing", Source::kind_name);
+            let text = format!("An earlier {kind} is not saved; the history ({history}) has it");
+            (text, "lose it")
         }
-        many => {
-            let count = many.len();
-            let what = if present.is_empty() {
-                format!("{count} shapes")
+        (present, earlier) => {
+            let count = counted(earlier.len() as u64, "earlier shape");
+            let imprint = if present.is_empty() {
+                ""
             } else {
-                format!("The imprint and {count} other shapes")
+                "The imprint and "
             };
-            format!("{what} are not saved; the history ({history}) has them")
+            let text = format!("{imprint}{count} are not saved; the history ({history}) has them");
+            (text, "lose them")
         }
-    };
-    let lost = if present.len() + others.len() > 1 {
-        "lose them"
-    } else {
-        "lose it"
-    };
-    Some((what, lost))
-}
-
-fn can_save_first(app: &App) -> bool {
-    let present = app.history.present();
-    app.unsaved() && !app.is_being_saved(present) && !app.reading().imprint.is_empty()
+    })
 }
 
 /// Offers the last unsaved work of programs that crashed, if there is any. No answer keeps it for the next start. While

@@ -114,9 +114,6 @@ fn answered(app: &mut App, answer: Answer) {
 
 fn perform(app: &mut App, message: Message) {
     app.begin_action();
-    if matches!(message, Message::Cancel | Message::Quit) {
-        app.quits_when_saved = false;
-    }
     // While the shape is held, its moves stay one step, even if help or another page is opened meanwhile.
     if !message.moves_shape() && app.held.is_none() {
         app.moves = None;

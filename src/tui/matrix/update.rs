@@ -84,7 +84,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) {
         Message::Picture => open_picture(app),
         Message::Figure => open_form(app, FormDialog::figure(app.history.present(), &app.forms)),
         Message::Sensor => open_form(app, FormDialog::sensor(app.history.present())),
-        Message::Save => save(app),
+        Message::Save => save(app, false),
         Message::Command => open_command(app),
         Message::History => open_history(app),
         Message::Explain => {
@@ -191,7 +191,7 @@ fn open_picture(app: &mut App) {
 /// Opens the prompt for a name. It proposes the name of the document if that is a shape of the user's own, unless the
 /// name gives the sizes of a figure that has other sizes by now. A shipped shape cannot be replaced, so a new name is
 /// proposed for it, as for a drawing without a name.
-fn save(app: &mut App) {
+pub(crate) fn save(app: &mut App, quits: bool) {
     if app.reading().imprint.is_empty() {
         return refuse(app, "nothing to save: the matrix is empty");
     }
@@ -209,7 +209,8 @@ fn save(app: &mut App) {
         },
         None => free_name(app, &name_of_origin(app)),
     };
-    let dialog = NameDialog::proposing(&name);
+    let mut dialog = NameDialog::proposing(&name);
+    dialog.quits = quits;
     app.open(dialog);
 }
 

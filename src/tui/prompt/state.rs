@@ -30,12 +30,15 @@ const LONGEST_NAME: usize = LONGEST + 8;
 #[derive(Clone, Debug)]
 pub struct NameDialog {
     pub field: TextField,
+    /// Whether the program ends once the shape is saved.
+    pub(crate) quits: bool,
 }
 
 impl NameDialog {
     pub fn new(name: &str) -> Self {
         Self {
             field: TextField::new(name, LONGEST_NAME),
+            quits: false,
         }
     }
 

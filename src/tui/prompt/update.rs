@@ -8,7 +8,7 @@ use taxel_files::formats::value::counted;
 use taxel_files::storage::{Library, ModelChoice, ModelFolder, ShapeOrigin};
 
 use crate::tui::app::change::refuse;
-use crate::tui::app::message::{LibraryRequest, Message};
+use crate::tui::app::message::Message;
 use crate::tui::app::page::Flow;
 use crate::tui::app::state::App;
 use crate::tui::jobs::answer;
@@ -138,8 +138,8 @@ pub(crate) fn in_name(dialog: &mut NameDialog, app: &mut App, message: &Message)
     if *message == Message::Accept {
         match dialog.name() {
             Ok(name) => {
-                let save = LibraryRequest::Save(name);
-                return Flow::ask(|app| shapes::update::act(app, save));
+                let quits = dialog.quits;
+                return Flow::ask(move |app| shapes::update::save(app, name, quits));
             }
             Err(error) => refuse(app, error.to_string()),
         }

@@ -28,7 +28,7 @@ use crate::tui::widget::rows::moved;
 
 pub(crate) fn act(app: &mut App, request: LibraryRequest) {
     match request {
-        LibraryRequest::Save(name) => save(app, name),
+        LibraryRequest::Save(name) => save(app, name, false),
         LibraryRequest::Named(Purpose::Delete, name) => ask_to_delete(app, name),
         LibraryRequest::Named(purpose, name) => load(app, purpose, name),
         LibraryRequest::Restore(name) => restore(app, name),
@@ -217,7 +217,7 @@ fn restore(app: &mut App, name: Option<String>) {
 
 /// Saves what is on the matrix. It replaces no file, not even the one that the document came from: if there is one, the
 /// library says what it holds now, and the user is asked.
-fn save(app: &mut App, name: Name) {
+pub(crate) fn save(app: &mut App, name: Name, quits: bool) {
     if let Some(saving) = &app.saving {
         let text = format!("{} is still being saved", saving.shape.name);
         return refuse(app, text);
@@ -228,6 +228,7 @@ fn save(app: &mut App, name: Name) {
         shape: Box::new(shape),
         origin: app.history.origin_index(),
         document,
+        quits,
     };
     store(app, saving, Expected::Nothing);
 }
@@ -282,7 +283,7 @@ fn on_stored(app: &mut App, stored: Stored) {
                 owner: ShapeOrigin::Own,
             };
             app.history.stored(saving.origin, saving.document, name);
-            if std::mem::take(&mut app.quits_when_saved) {
+            if saving.quits {
                 // Asks once more if an earlier drawing is not saved.
                 quit(app);
             }
