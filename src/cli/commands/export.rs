@@ -56,12 +56,7 @@ pub(crate) struct ExportCommand {
 impl ExportCommand {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
         let export = Export::new(self.to, self.format, replacing(self.force))?;
-        export.check_force(false)?;
         let pitch = self.pitch.pitch(&cx.settings)?;
-        if pitch.given.is_some() && export.format.name != ExportFormat::SVG {
-            let text = "--pitch has no effect on this format: it is for drawings";
-            return Err(Failure::usage(text));
-        }
         let drawing = match cx.shelf.find(&self.what)? {
             Content::Imprint(imprint) => {
                 let title = Path::new(&self.what).file_name().unwrap_or(&self.what);
@@ -152,14 +147,6 @@ impl Export {
         })
     }
 
-    /// Refuses `--force` if there is nothing that it could replace. With `--save` it may be meant for the shape.
-    fn check_force(&self, saves: bool) -> Result<(), Failure> {
-        if self.path.is_none() && self.existing == Existing::Replaced && !saves {
-            return Err(Failure::usage("--force has no effect on standard output"));
-        }
-        Ok(())
-    }
-
     /// The file of one of several imprints: its name has the number at its end.
     pub(crate) fn numbered(&self, number: u64) -> Self {
         let path = self.path.as_ref().map(|path| {
@@ -199,13 +186,9 @@ impl KeepFlags {
         let export = self.export.clone();
         let export = export.map(|path| Export::new(path, self.format, existing));
         let export = export.transpose()?;
-        if let Some(export) = &export {
-            export.check_force(save.is_some())?;
-            if export.path.is_none() && json {
-                return Err(Failure::usage(
-                    "the argument '--json' cannot be used with '--export -': both write to standard output",
-                ));
-            }
+        if json && export.as_ref().is_some_and(|export| export.path.is_none()) {
+            let text = "the argument '--json' cannot be used with '--export -': both write to standard output";
+            return Err(Failure::usage(text));
         }
         Ok(Kept {
             save,

@@ -2,11 +2,11 @@
 
 use std::collections::HashSet;
 use std::io::BufReader;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use taxel_core::recognition::{Evaluation, ModelMerge};
-use taxel_core::sweep::{Shard, SweepMerge};
+use taxel_core::sweep::SweepMerge;
 use taxel_files::formats::{MODEL_FORMAT, archive_kind, json};
 use taxel_files::memory::{MemoryGuard, MemorySize};
 use taxel_files::storage::{self, check_writable, load_atlas, load_model, save_model, write_atlas};
@@ -57,12 +57,13 @@ impl Merge {
         let start = Instant::now();
         let existing = replacing(self.force);
         check_writable(&self.out, existing)?;
-        let parts = self.parts()?;
+        let (parts, is_model) = self.parts()?;
         let advice = "allow more (--memory), or merge on a machine that has more";
         let memory = MemoryGuard::new(self.memory, advice);
-        let (text, done) = if parts.iter().any(Part::is_model) {
+        let (text, done) = if is_model {
+            model_file(&self.out)?;
             let mut merge = ModelMerge::default();
-            for Part { path, .. } in &parts {
+            for path in parts {
                 let model = load_model(path)?;
                 if self.json {
                     fits_in_table("confusion matrix", model.shapes().len())?;
@@ -72,8 +73,8 @@ impl Merge {
             }
             let model = merge.finish()?;
             let evaluation = &Evaluation::of(&model);
+            let classifier = None;
             let text = if self.json {
-                let classifier = None;
                 json::ascii(&EvaluationJson {
                     evaluation,
                     classifier,
@@ -84,17 +85,14 @@ impl Merge {
             (text, save_model(&model, &self.out, existing))
         } else {
             let mut merge = SweepMerge::default();
-            for Part { path, .. } in &parts {
+            for path in parts {
                 merge.add(load_atlas(path)?).named(path.display())?;
                 memory.check().map_err(Failure::new)?;
             }
             let result = merge.finish()?;
+            let text = sweep_summary::of(&result, start.elapsed(), self.json, cx.charset);
             let file = write_atlas(&self.out, &result, existing);
-            let done = file.and_then(|file| file.persist().map(drop));
-            (
-                sweep_summary::of(&result, start.elapsed(), self.json, cx.charset),
-                done,
-            )
+            (text, file.and_then(|file| file.persist().map(drop)))
         };
         // The work is not lost if its file cannot be written.
         cx.write(text.as_bytes())?;
@@ -105,86 +103,48 @@ impl Merge {
         Ok(())
     }
 
-    /// Returns the shards in their order. Those that do not belong together are refused before they are read.
-    fn parts(&self) -> Result<Vec<Part>, Failure> {
+    /// Returns the shards in their order, and whether they are models. What is wrong with them is said before hours of
+    /// reading; the merge itself refuses the rest.
+    fn parts(&self) -> Result<(Vec<&Path>, bool), Failure> {
         let mut parts = Vec::new();
+        let mut is_model = false;
+        let out = self.out.canonicalize().ok();
         for path in &self.files {
             // The shards could not be merged again.
-            if self
-                .out
-                .canonicalize()
-                .is_ok_and(|out| path.canonicalize().is_ok_and(|own| own == out))
-            {
+            if out.is_some() && out == path.canonicalize().ok() {
                 let text = "one of the shards; write to another file";
                 return Err(Failure::new(text)).named(path.display());
             }
             let kind = archive_kind(BufReader::new(storage::open(path)?));
             let (format, shard) = kind.named(path.display())?;
-            parts.push(Part {
-                path: path.clone(),
-                format,
-                shard,
-            });
+            is_model = format == MODEL_FORMAT;
+            parts.push((shard, path.as_path()));
         }
-        parts.sort_by_key(|part| part.shard.number());
-        let first = &parts[0];
-        let of = first.shard.of();
-        for part in &parts {
-            let (noun, place) = (first.noun(), first.path.display());
-            let difference = if part.is_model() != first.is_model() {
-                format!(
-                    "{}, but {place} is {noun}; give the shards of one sweep or of one training",
-                    part.noun()
-                )
-            } else if part.shard.of() != of {
-                format!(
-                    "shard {}, but {place} is shard {}: not the same study",
-                    part.shard, first.shard
-                )
-            } else {
-                continue;
-            };
-            return Err(Failure::new(difference)).named(part.path.display());
+        parts.sort_by_key(|(shard, _)| shard.number());
+        let (first, place) = parts[0];
+        if let Some((shard, path)) = parts.iter().find(|(shard, _)| shard.of() != first.of()) {
+            let place = place.display();
+            let text = format!("shard {shard}, but {place} is shard {first}: not the same study");
+            return Err(Failure::new(text)).named(path.display());
         }
-        let given: HashSet<u32> = parts.iter().map(|part| part.shard.number()).collect();
+        let given: HashSet<u32> = parts.iter().map(|(shard, _)| shard.number()).collect();
+        let missing = (1..=first.of()).filter(|number| !given.contains(number));
+        let mut missing: Vec<String> = missing.map(|number| number.to_string()).collect();
         // The merge refuses one that is given twice.
-        if given.len() == parts.len() && given.len() < of as usize {
-            let missing = (1..=of).filter(|number| !given.contains(number));
-            let mut numbers: Vec<String> = missing.map(|number| number.to_string()).collect();
-            let count = numbers.len();
-            if count > MOST_LISTED {
-                numbers.truncate(MOST_LISTED);
-                numbers.push("…".to_owned());
-            }
-            let (numbers, are) = (numbers.join(", "), if count == 1 { "is" } else { "are" });
-            let text = format!("{count} of {of} shards {are} missing: {numbers}");
-            return Err(Failure::new(text));
+        if missing.is_empty() || given.len() < parts.len() {
+            return Ok((parts.into_iter().map(|(_, path)| path).collect(), is_model));
         }
-        if first.is_model() {
-            model_file(&self.out)?;
+        let (count, of) = (missing.len(), first.of());
+        if count > MOST_LISTED {
+            missing.truncate(MOST_LISTED);
+            missing.push("…".to_owned());
         }
-        Ok(parts)
+        let are = if count == 1 { "is" } else { "are" };
+        let missing = missing.join(", ");
+        Err(Failure::new(format!(
+            "{count} of {of} shards {are} missing: {missing}"
+        )))
     }
 }
 
 const MOST_LISTED: usize = 10;
-
-struct Part {
-    path: PathBuf,
-    format: String,
-    shard: Shard,
-}
-
-impl Part {
-    fn is_model(&self) -> bool {
-        self.format == MODEL_FORMAT
-    }
-
-    fn noun(&self) -> &'static str {
-        if self.is_model() {
-            "a model"
-        } else {
-            "an atlas"
-        }
-    }
-}

@@ -14,9 +14,7 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use taxel_core::figure::FigureKind;
 use taxel_core::parameter::ParameterError;
 use taxel_core::parameter::number::short;
-use taxel_core::pose::{
-    Anchor, Axis, GivenRanges, GridError, PoseGrid, default_ranges, figure_ranges,
-};
+use taxel_core::pose::{Anchor, Axis, GridError, PoseGrid, default_ranges, figure_ranges};
 use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
 use taxel_core::sweep::{Shard, Sweep as Sweeping, SweepResult};
@@ -109,12 +107,7 @@ pub(crate) fn atlas() -> impl TypedValueParser<Value = PathBuf> {
 
 impl Sweep {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
-        let (source, sensor) = self.shape(cx)?;
-        let anchor = self.anchor.unwrap_or_default();
-        let (grid, notes) = grid(source, sensor, anchor, &self.ranges.0)?;
-        for text in notes.iter().filter(|_| !self.quiet) {
-            cx.note(text);
-        }
+        let grid = self.grid(cx)?;
         let start = Instant::now();
         let signals = Signals::catch()?;
         let existing = replacing(self.force);
@@ -159,6 +152,40 @@ impl Sweep {
         Ok(())
     }
 
+    /// Returns the grid to sweep. Notes warn of ranges of x0 and y0 that were not given: that they span less than a cell,
+    /// and how many poses are cut off nevertheless. The summary names the ranges.
+    fn grid(&self, cx: &Context) -> Result<PoseGrid, Failure> {
+        let (source, sensor) = self.shape(cx)?;
+        let (anchor, given) = (self.anchor.unwrap_or_default(), &self.ranges.0);
+        let ranges = match source {
+            // A figure on the command line has no position; a picture is swept in the cell that it lies in.
+            Source::Figure(_) => figure_ranges(&source, &sensor, anchor, given),
+            Source::Picture(_) => default_ranges(&source, &sensor, anchor, given),
+        };
+        let ranges = ranges.map_err(grid_refused)?;
+        let grid = PoseGrid::new(source, sensor, anchor, ranges).map_err(grid_refused)?;
+        let zooms = [(Axis::X0, Axis::ZoomX), (Axis::Y0, Axis::ZoomY)];
+        let missing = || zooms.iter().filter(|(axis, _)| given[*axis].is_none());
+        if self.quiet || missing().next().is_none() {
+            return Ok(grid);
+        }
+        let is_zoomed = |&(_, zoom): &(Axis, Axis)| grid.ranges()[zoom].value(0) < 1.0;
+        if anchor == Anchor::Corner && missing().any(is_zoomed) {
+            cx.note(
+                "the corner is zoomed, too: it moves by less than a cell; '--anchor centre' moves the shape by a cell",
+            );
+        }
+        let cut = grid.poses_beyond_sensor();
+        if cut > 0 {
+            let (noun, cut) = (grid.source().noun(), grouped(cut));
+            let poses = counted(grid.poses(), "pose");
+            cx.note(&format!(
+                "the {noun} reaches beyond the sensor in {cut} of {poses}"
+            ));
+        }
+        Ok(grid)
+    }
+
     fn shape(&self, cx: &Context) -> Result<(Source, Sensor), Failure> {
         if let Some(picture) = &self.picture {
             if let Some(size) = self.sizes.first() {
@@ -171,48 +198,6 @@ impl Sweep {
         let kind = self.kind.unwrap_or(FigureKind::Ellipse);
         Ok((Source::Figure(self.sizes.figure(kind, &sensor)?), sensor))
     }
-}
-
-/// Returns the grid to sweep, and notes about the ranges of x0 and y0 that were not given: whether they span less than
-/// a cell, and how many poses are cut off nevertheless. The summary names the ranges.
-///
-/// A figure on the command line has no position, so it is swept in the [`figure_ranges`]; a picture is swept in the
-/// cell that it lies in.
-fn grid(
-    source: Source,
-    sensor: Sensor,
-    anchor: Anchor,
-    given: &GivenRanges,
-) -> Result<(PoseGrid, Vec<String>), Failure> {
-    let ranges = match source {
-        Source::Figure(_) => figure_ranges(&source, &sensor, anchor, given),
-        Source::Picture(_) => default_ranges(&source, &sensor, anchor, given),
-    };
-    let ranges = ranges.map_err(grid_refused)?;
-    let grid = PoseGrid::new(source, sensor, anchor, ranges).map_err(grid_refused)?;
-    let zoomed = [(Axis::X0, Axis::ZoomX), (Axis::Y0, Axis::ZoomY)];
-    let mut missing = zoomed
-        .iter()
-        .filter(|(axis, _)| given[*axis].is_none())
-        .peekable();
-    let mut notes = Vec::new();
-    if missing.peek().is_none() {
-        return Ok((grid, notes));
-    }
-    if anchor == Anchor::Corner && missing.any(|&(_, zoom)| grid.ranges()[zoom].value(0) < 1.0) {
-        let note = "the corner is zoomed, too: it moves by less than a cell; '--anchor centre' moves the shape by a cell";
-        notes.push(note.to_owned());
-    }
-    let cut = grid.poses_beyond_sensor();
-    if cut > 0 {
-        notes.push(format!(
-            "the {} reaches beyond the sensor in {} of {}",
-            grid.source().noun(),
-            grouped(cut),
-            counted(grid.poses(), "pose")
-        ));
-    }
-    Ok((grid, notes))
 }
 
 /// Says which flag gives a range that the grid cannot have.
