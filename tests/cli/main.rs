@@ -38,7 +38,6 @@ mod library;
 mod picture;
 
 mod sweep;
-mod sweep_files;
 
 mod model;
 

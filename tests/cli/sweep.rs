@@ -1,17 +1,22 @@
-//! Tests of `taxel sweep` and `taxel merge`: summaries, files, shards, interrupts, refusals.
+//! Tests of `taxel sweep` and `taxel merge`: summaries, files, shards, interrupts, refusals. Files are whole, replace
+//! others only on request, and are not left by a sweep that was stopped.
 
 use std::fs;
 use std::path::Path;
 use std::process::Command;
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
 use crate::paper::RING_IMPRINTS;
 
+use super::finish;
+use super::program;
 use super::python_has;
 use super::refused;
 use super::sh;
 use super::taxel;
+use super::until;
 
 /// A sweep of the paper's ring over one cell.
 const RING: &str = "sweep ellipse --radius-x 4 --radius-y 4 --thickness 2 --angle 0 --x0 1:1.99:0.01 --y0 1:1.99:0.01";
@@ -108,24 +113,12 @@ fn the_default_ranges_are_printed_once() {
         noted,
     );
     // A picture stays in its own cell.
-    ran(
-        "sweep --picture washer --angle 0:90:45 --json",
-        ["2:2.99:0.01"; 2],
-        0,
-        "",
-    );
-    ran(
-        "sweep --picture cross --angle 0:90:5 --json",
-        ["2:2.99:0.01"; 2],
-        0,
-        "",
-    );
+    let washer = "sweep --picture washer --angle 0:90:45 --json";
+    ran(washer, ["2:2.99:0.01"; 2], 0, "");
     // A corner that is zoomed moves by half a cell, a centre by a whole one.
-    let zoomed = "sweep --picture washer --zoom-x 0.5 --zoom-y 0.5 --angle 0 --json";
-    let noted = "the corner is zoomed, too: it moves by less than a cell; \
-         '--anchor centre' moves the shape by a cell\n";
-    ran(zoomed, ["2:2.99:0.01"; 2], 0, noted);
-    let centred = format!("{zoomed} --anchor centre --quiet");
+    let zoomed = "sweep --picture washer --zoom-x 0.5 --zoom-y 0.5 --angle 0 --json --quiet";
+    ran(zoomed, ["2:2.99:0.01"; 2], 0, "");
+    let centred = format!("{zoomed} --anchor centre");
     ran(&centred, ["6:6.99:0.01", "5:5.99:0.01"], 0, "");
 }
 
@@ -256,7 +249,7 @@ fn a_sweep_goes_on_if_a_signal_is_ignored() {
     std::io::BufRead::read_line(&mut output, &mut line).expect("text");
     let id = rustix::process::Pid::from_child(&child);
     for signal in [rustix::process::Signal::INT, rustix::process::Signal::TERM] {
-        std::thread::sleep(std::time::Duration::from_millis(100));
+        std::thread::sleep(Duration::from_millis(100));
         let ended = child.try_wait().expect("a child");
         assert_eq!(ended, None, "it ended before the signal");
         rustix::process::kill_process(id, signal).expect("it still runs");
@@ -267,39 +260,43 @@ fn a_sweep_goes_on_if_a_signal_is_ignored() {
 }
 
 #[test]
-fn the_memory_of_a_merge_is_limited() {
+fn shards_that_do_not_belong_together_are_refused() {
     let scratch = folder();
     let path = |name: &str| scratch.path().join(name).display().to_string();
     let (one, two) = (path("1.npz"), path("2.npz"));
     for (number, name) in [(1, &one), (2, &two)] {
         json(&format!("{RING} --json --shard {number}/2 --atlas {name}"));
     }
-    let merge = |more: &str| taxel(&format!("merge {two} {one} {more}"), "");
-    let run = merge(&format!("--atlas {}", path("m.npz")));
-    let written = format!("written: {}\n", path("m.npz"));
-    assert_eq!((run.status, run.stderr), (Some(0), written));
+    let merge = |what: &str| taxel(&format!("merge {what}"), "");
+    let out = path("m.npz");
+    let run = merge(&format!("{two} {one} --atlas {out}"));
+    assert_eq!(
+        (run.status, run.stderr),
+        (Some(0), format!("written: {out}\n"))
+    );
     assert!(run.stdout.contains("393 "), "{}", run.stdout);
-    let run = merge(&format!("--atlas {one} --force"));
-    let expected = format!("error: {one}: one of the shards; write to another file\n");
-    assert_eq!((run.status, run.stderr), (Some(1), expected));
-    let run = taxel(
-        &format!("merge {one} {} --atlas {}", path("m.npz"), path("no.npz")),
-        "",
-    );
-    let foreign = format!(
-        "{}: shard 1/1, but {one} is shard 1/2: not the same study\n",
-        path("m.npz")
-    );
-    assert!(run.stderr.ends_with(&foreign), "{}", run.stderr);
-    let run = merge(&format!("--atlas {} --quiet", path("q.npz")));
-    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
-    let run = merge(&format!("--atlas {} --memory 1M", path("no.npz")));
-    let said = "needs more memory than the 1.0M allowed";
-    assert!(
-        run.status == Some(1) && run.stderr.contains(said),
-        "{}",
-        run.stderr
-    );
+    let no = path("no.npz");
+    for (line, message) in [
+        (
+            format!("{two} {one} --atlas {one} --force"),
+            format!("{one}: one of the shards; write to another file"),
+        ),
+        (
+            format!("{one} {out} --atlas {no}"),
+            format!("{out}: shard 1/1, but {one} is shard 1/2: not the same study"),
+        ),
+        (format!("{one} --atlas {no}"), "1 of 2 shards is missing: 2".to_owned()),
+        (
+            format!("{one} {one} --atlas {no}"),
+            format!("{one}: shard 1/2 is given twice"),
+        ),
+        (
+            format!("{two} {one} --atlas {no} --memory 1M"),
+            "stopped: needs more memory than the 1.0M allowed; allow more (--memory), or merge on a machine that has more".to_owned(),
+        ),
+    ] {
+        refused(&merge(&line), 1, &message);
+    }
     assert!(!scratch.path().join("no.npz").exists());
 }
 
@@ -346,81 +343,84 @@ fn damaged_archives_are_refused() {
         refusals += i32::from(numbers[place]);
     }
     assert!(refusals > 100, "{refusals}");
-    for (name, content) in [
-        ("empty", &b""[..]),
-        ("text", b"no archive"),
-        ("half", &good[..good.len() / 2]),
-    ] {
+    for content in [&b"no archive"[..], &good[..good.len() / 2]] {
         fs::write(path("bad.npz"), content).expect("a file");
-        let run = taxel(
-            &format!("merge {} --atlas {}", path("bad.npz"), path("y.csv")),
-            "",
-        );
-        assert_eq!(run.status, Some(1), "{name}");
+        let run = taxel(&merged, "");
+        let told = "bad.npz: cannot be read as an atlas or a model";
         assert!(
-            run.stderr
-                .contains("bad.npz: cannot be read as an atlas or a model"),
-            "{name}: {}",
-            run.stderr
+            run.status == Some(1) && run.stderr.contains(told),
+            "{run:?}"
         );
     }
 }
 
 #[test]
 fn impossible_sweeps_are_refused() {
-    refused(
-        &taxel("sweep hexagon --x0 1:20:1", ""),
-        1,
-        "--x0 20 is above 16 (allowed: -16 to 16)",
-    );
-    refused(
-        &taxel(
+    for (status, line, message) in [
+        (
+            1,
+            "sweep hexagon --x0 1:20:1",
+            "20 is above 16 (allowed: -16 to 16)\n",
+        ),
+        (
+            1,
             "sweep hexagon --x0 0:0.999999:0.000001 --y0 0:0.999999:0.000001",
-            "",
+            "360,000,000,000,000 poses, expected at most 1,000,000,000,000\n",
         ),
-        1,
-        "360,000,000,000,000 poses, expected at most 1,000,000,000,000",
-    );
-    refused(
-        &taxel("sweep hexagon --zoom-x 2", ""),
-        1,
-        "--zoom-x and --zoom-y are for pictures only (--picture)",
-    );
-    for (line, expected) in [
         (
+            1,
+            "sweep hexagon --zoom-x 2",
+            "a figure has no zoom, only a picture has one\n",
+        ),
+        (
+            2,
             "sweep hexagon --x0 1:2",
-            "invalid value '1:2' for '--x0 <START:END:STEP>': expected a number or start:end:step",
+            "'--x0 <RANGE>': expected a number or start:end:step\n",
         ),
         (
+            2,
             "sweep hexagon --shard 4/3",
             "invalid value '4/3' for '--shard <K/N>': expected K/N with K from 1 to N and N up to 4294967295",
         ),
         (
+            2,
             "sweep hexagon --length 3",
             "'--length' does not belong to 'hexagon'",
         ),
         (
+            2,
             "sweep --picture washer --side 3",
-            "'--side' does not belong to a picture",
+            "'--side' does not belong to a picture\n",
         ),
         (
+            2,
             "sweep",
-            "required arguments were not provided:\n  <KIND|--picture <NAME|FILE>>\n\n  \
-             tip: KIND is ellipse, rectangle, triangle, pentagon, hexagon, heptagon or octagon\n\n\
-             Usage: taxel sweep <KIND|--picture <NAME|FILE>>\n",
+            "required arguments were not provided:\n  <KIND|--picture <NAME|FILE>>\n",
+        ),
+        (
+            1,
+            "sweep hexagon --angle 0 --quiet --atlas /nowhere/a.csv",
+            "error: /nowhere/a.csv: ",
+        ),
+        (
+            2,
+            "sweep hexagon --memory much",
+            "expected an amount of memory such as 2G",
+        ),
+        (
+            2,
+            "sweep hexagon --poses a.npz",
+            "expected a name that ends in .npy",
         ),
     ] {
         let run = taxel(line, "");
-        assert_eq!((run.status, run.stdout.as_str()), (Some(2), ""), "{line}");
-        assert!(run.stderr.contains(expected), "{line}: {}", run.stderr);
+        assert_eq!(
+            (run.status, run.stdout.as_str()),
+            (Some(status), ""),
+            "{line}"
+        );
+        assert!(run.stderr.contains(message), "{line}: {}", run.stderr);
     }
-    let run = taxel("sweep hexagon --angle 0 --quiet --atlas /nowhere/a.csv", "");
-    assert_eq!(run.status, Some(1));
-    assert!(
-        run.stderr.starts_with("error: /nowhere/a.csv: "),
-        "{}",
-        run.stderr
-    );
 }
 
 /// The real numpy reads atlas and poses, if Python has it; with `TAXEL_NUMPY` set, it is required.
@@ -468,38 +468,19 @@ assert x0[0] == 5.0 and x0.max() <= 5.9 and numpy.isnan(atlas['cg_cd_direction']
 #[cfg(target_os = "linux")]
 #[test]
 fn a_sweep_respects_the_memory_limit() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let atlas = folder.path().join("a.npz");
-    let run = |ranges: &str, memory: &str| {
-        let line = format!(
-            "sweep rectangle --length 10 --width 8 --thickness 0.7 {ranges} --memory {memory} --quiet --atlas {}",
-            atlas.display()
-        );
-        taxel(&line, "")
-    };
-    let stopped = run("--x0 0:3:0.05 --y0 0:3:0.05 --angle 0:45:1", "20M");
-    assert_eq!(
-        (stopped.status, stopped.stdout.as_str()),
-        (Some(1), ""),
-        "{stopped:?}"
+    let scratch = folder();
+    let atlas = scratch.path().join("a.npz");
+    let line = format!(
+        "sweep rectangle --length 10 --width 8 --thickness 0.7 --x0 0:3:0.05 --y0 0:3:0.05 --angle 0:45:1 --memory 20M --quiet --atlas {}",
+        atlas.display()
     );
-    let told = stopped.stderr.contains("memory") && stopped.stderr.contains("--shard 1/8");
-    assert!(told, "{stopped:?}");
-    assert_eq!(
-        fs::read_dir(folder.path()).expect("read").count(),
-        0,
-        "nothing is left"
-    );
-    let done = run("--x0 0:1:0.5 --y0 0:1:0.5 --angle 0", "4G");
-    assert_eq!(done.status, Some(0), "{done:?}");
-    let wrong = run("", "much");
-    assert_eq!(wrong.status, Some(2));
+    let run = taxel(&line, "");
+    let told = run.stderr.contains("memory") && run.stderr.contains("--shard 1/8");
     assert!(
-        wrong
-            .stderr
-            .contains("expected an amount of memory such as 2G"),
-        "{wrong:?}"
+        run.status == Some(1) && told && run.stdout.is_empty(),
+        "{run:?}"
     );
+    assert_eq!(names(scratch.path()), [""; 0], "nothing is left");
 }
 
 /// The signal of `ulimit -f` would end the program without a message.
@@ -516,4 +497,73 @@ fn a_file_beyond_the_limit_is_an_error_like_a_full_disk() {
         "{said}"
     );
     assert!(!Path::new(&path).exists(), "nothing is left behind");
+}
+
+/// Prints the time until it stops: `cargo test --release --test cli interrupt -- --nocapture`.
+#[test]
+fn an_interrupt_stops_at_once_and_leaves_no_files() {
+    let scratch = folder();
+    let folder = scratch.path();
+    let path = |name: &str| folder.join(name).display().to_string();
+    // A sweep that would take hours.
+    let line = format!(
+        "sweep heptagon --side 3 --thickness 1 --x0 5:5.999:0.001 --y0 5:5.999:0.001 --angle 0:359.999:0.001 --quiet --memory 900000T --atlas {} --poses {}",
+        path("a.npz"),
+        path("p.npy")
+    );
+    let arguments: Vec<&str> = line.split_whitespace().collect();
+    let mut child = program(&arguments, "C.UTF-8")
+        .spawn()
+        .expect("the program starts");
+    let id = i32::try_from(child.id()).expect("a process");
+    // The program listens for signals before it opens a file, which may have no name yet.
+    let opened = format!("/proc/{id}/fd");
+    let is_open = || {
+        let files = fs::read_dir(&opened).into_iter().flatten().flatten();
+        let mut targets = files.filter_map(|file| fs::read_link(file.path()).ok());
+        targets.any(|target| target.starts_with(folder)) || !names(folder).is_empty()
+    };
+    until("open file", || {
+        let ended = child.try_wait().expect("a child");
+        assert_eq!(ended, None, "it ended before it was interrupted");
+        is_open()
+    });
+    // Now the sweep is under way.
+    std::thread::sleep(Duration::from_millis(200));
+    let start = Instant::now();
+    let id = rustix::process::Pid::from_raw(id).expect("a process");
+    rustix::process::kill_process(id, rustix::process::Signal::TERM).expect("it runs still");
+    let run = finish(child, b"");
+    let took = start.elapsed();
+    println!("stopped after {took:?}");
+    assert!(took < Duration::from_secs(5), "{took:?}");
+    refused(&run, 143, "stopped; nothing was written");
+    assert_eq!(names(folder), [""; 0]);
+}
+
+/// Hours of work are not lost by a mistake, and not done in vain either: the refusal comes first.
+#[test]
+fn files_are_only_replaced_with_force() {
+    let scratch = folder();
+    let path = |name: &str| scratch.path().join(name);
+    let sweep = |files: &str| {
+        let line = format!("sweep hexagon --x0 5 --y0 5 --angle 0:2:1 --quiet {files}");
+        taxel(&line, "")
+    };
+    let (atlas, poses) = (path("a.NPZ"), path("p.npy"));
+    let (atlas, poses) = (atlas.display(), poses.display());
+    assert_eq!(
+        sweep(&format!("--atlas {atlas} --poses {poses}")).status,
+        Some(0)
+    );
+    let first = fs::read(path("a.NPZ")).expect("written");
+    fs::write(path("a.NPZ"), "mine").expect("written");
+    let there = format!("{:?} already exists; --force replaces it", path("a.NPZ"));
+    refused(&sweep(&format!("--atlas {atlas}")), 1, &there);
+    let there = format!("{:?} already exists; --force replaces it", path("p.npy"));
+    refused(&sweep(&format!("--poses {poses}")), 1, &there);
+    assert_eq!(fs::read(path("a.NPZ")).ok().as_deref(), Some(&b"mine"[..]));
+    assert_eq!(sweep(&format!("--atlas {atlas} --force")).status, Some(0));
+    assert_eq!(fs::read(path("a.NPZ")).ok(), Some(first));
+    assert_eq!(names(scratch.path()), ["a.NPZ", "p.npy"]);
 }

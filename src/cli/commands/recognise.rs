@@ -32,7 +32,7 @@ use crate::cli::arguments::flags::{name_or_path, parse_number, parse_probability
 use crate::cli::arguments::parameters::PitchFlag;
 use crate::cli::commands::model;
 use crate::cli::failure::{Failure, Named};
-use crate::cli::input::content::{self, Input};
+use crate::cli::input::content::Input;
 use crate::cli::input::lines::{self, MAX_LINE};
 use crate::cli::input::shapes::{Located, Shelf};
 use crate::cli::output::answer::{AnswerJson, AnswerText, PoseReport};
@@ -424,11 +424,17 @@ impl Recogniser<'_> {
         };
         let model = &self.namer.model;
         let memory = MemoryGuard::new(None, "train the model in coarser steps to see poses");
-        let estimate = memory.limit(&ToTheEnd, |progress| model.pose_of(shape, touch, progress));
-        let pose = estimate
-            .map_err(Failure::new)?
-            .and_then(|estimate| PoseReport::new(model, shape, touch, estimate, self.pitch_mm));
-        Ok(pose)
+        let poses = memory.limit(&ToTheEnd, |progress| {
+            model.poses_of(shape, touch, 1, progress)
+        });
+        let found = poses.map_err(Failure::new)?.zip(touch.bounds());
+        Ok(found.map(|((estimate, mut placed), bounds)| PoseReport {
+            name: self.name(shape).clone(),
+            estimate,
+            corner: [bounds.left.into(), bounds.top.into()],
+            placed: placed.pop(),
+            pitch_mm: self.pitch_mm,
+        }))
     }
 
     fn name(&self, shape: usize) -> &String {
@@ -529,14 +535,7 @@ fn read_line(line: &[u8]) -> Result<(Vec<Imprint>, Vec<Copied>), ReadError> {
         (None, None, Some(_)) => {
             return Err(ReadError::new("touches: empty, expected at least one"));
         }
-        _ => {
-            let elsewhere = content::line_of_sources(line);
-            let hint = elsewhere
-                .map(|(what, command)| format!("; if this is {what}, use taxel {command}"));
-            return Err(ReadError::new(
-                ONE_KEY.to_owned() + &hint.unwrap_or_default(),
-            ));
-        }
+        _ => return Err(ReadError::new(ONE_KEY)),
     };
     let copied = [
         ("frame", number),

@@ -12,9 +12,7 @@ use std::time::Instant;
 use clap::ArgGroup;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use taxel_core::figure::FigureKind;
-use taxel_core::parameter::ParameterError;
-use taxel_core::parameter::number::short;
-use taxel_core::pose::{Anchor, Axis, GridError, PoseGrid, default_ranges, figure_ranges};
+use taxel_core::pose::{Anchor, Axis, PoseGrid, default_ranges, figure_ranges};
 use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
 use taxel_core::sweep::{Shard, Sweep as Sweeping, SweepResult};
@@ -152,8 +150,7 @@ impl Sweep {
         Ok(())
     }
 
-    /// Returns the grid to sweep. Notes warn of ranges of x0 and y0 that were not given: that they span less than a cell,
-    /// and how many poses are cut off nevertheless. The summary names the ranges.
+    /// Returns the grid to sweep. If x0 or y0 was not given, a note says how many poses are cut off nevertheless.
     fn grid(&self, cx: &Context) -> Result<PoseGrid, Failure> {
         let (source, sensor) = self.shape(cx)?;
         let (anchor, given) = (self.anchor.unwrap_or_default(), &self.ranges.0);
@@ -162,18 +159,9 @@ impl Sweep {
             Source::Figure(_) => figure_ranges(&source, &sensor, anchor, given),
             Source::Picture(_) => default_ranges(&source, &sensor, anchor, given),
         };
-        let ranges = ranges.map_err(grid_refused)?;
-        let grid = PoseGrid::new(source, sensor, anchor, ranges).map_err(grid_refused)?;
-        let zooms = [(Axis::X0, Axis::ZoomX), (Axis::Y0, Axis::ZoomY)];
-        let missing = || zooms.iter().filter(|(axis, _)| given[*axis].is_none());
-        if self.quiet || missing().next().is_none() {
+        let grid = PoseGrid::new(source, sensor, anchor, ranges?)?;
+        if self.quiet || given[Axis::X0].and(given[Axis::Y0]).is_some() {
             return Ok(grid);
-        }
-        let is_zoomed = |&(_, zoom): &(Axis, Axis)| grid.ranges()[zoom].value(0) < 1.0;
-        if anchor == Anchor::Corner && missing().any(is_zoomed) {
-            cx.note(
-                "the corner is zoomed, too: it moves by less than a cell; '--anchor centre' moves the shape by a cell",
-            );
         }
         let cut = grid.poses_beyond_sensor();
         if cut > 0 {
@@ -197,20 +185,6 @@ impl Sweep {
         let sensor = self.sensor.sensor(cx.settings.sensor())?;
         let kind = self.kind.unwrap_or(FigureKind::Ellipse);
         Ok((Source::Figure(self.sizes.figure(kind, &sensor)?), sensor))
-    }
-}
-
-/// Says which flag gives a range that the grid cannot have.
-pub(crate) fn grid_refused(error: GridError) -> Failure {
-    match error {
-        GridError::Parameter(error @ ParameterError::Range { value, .. }) => {
-            let flag = error.parameter().flag();
-            Failure::new(format!("--{flag} {} {}", short(value), error.complaint()))
-        }
-        GridError::Zoom(_) => {
-            Failure::new("--zoom-x and --zoom-y are for pictures only (--picture)")
-        }
-        error => error.into(),
     }
 }
 

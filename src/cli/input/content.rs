@@ -6,10 +6,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use serde::Deserialize;
-use serde::de::IgnoredAny;
 use taxel_files::ReadError;
-use taxel_files::formats::file::without_mark;
 use taxel_files::formats::imprint_file::MAX_BYTES;
 use taxel_files::formats::recording::may_be_recording;
 use taxel_files::formats::{Content, read_content};
@@ -70,44 +67,15 @@ impl Input {
         Ok(Self { name, read })
     }
 
-    /// Reads an imprint or a stored shape. If another command reads what is there, the error names it.
+    /// Reads an imprint or a stored shape.
     pub(crate) fn content(self) -> Result<Content, Failure> {
         let mut bytes = Vec::new();
         let mut limited = self.read.take(MAX_BYTES as u64 + 1);
         let read = limited.read_to_end(&mut bytes).map_err(ReadError::from);
-        read.and_then(|_| read_content(&bytes))
-            .named(&self.name)
-            .map_err(|failure| {
-                let other = if may_be_recording(&bytes) {
-                    Some(("a recording", "frames"))
-                } else {
-                    let mut lines = without_mark(&bytes).split(|&byte| byte == b'\n');
-                    let first = lines.find(|line| !line.trim_ascii().is_empty());
-                    first.and_then(line_of_sources)
-                };
-                match other {
-                    Some((what, command)) => {
-                        failure.with_hint(format!("; if this is {what}, use taxel {command}"))
-                    }
-                    None => failure,
-                }
-            })
+        let content = read.and_then(|_| read_content(&bytes)).named(&self.name);
+        content.map_err(|failure| {
+            let hint = "; if this is a recording, use taxel frames";
+            failure.with_hint(if may_be_recording(&bytes) { hint } else { "" })
+        })
     }
-}
-
-/// Returns what a JSON line is, a pose or a shape of a set, and the command that reads it; None if it is neither. A
-/// stored shape has neither of the keys `figure` and `picture`.
-pub(crate) fn line_of_sources(line: &[u8]) -> Option<(&'static str, &'static str)> {
-    #[derive(Deserialize)]
-    struct SourceKeys {
-        figure: Option<IgnoredAny>,
-        picture: Option<IgnoredAny>,
-        name: Option<IgnoredAny>,
-    }
-    let keys: SourceKeys = serde_json::from_slice(line).ok()?;
-    keys.figure.or(keys.picture)?;
-    Some(match keys.name {
-        Some(_) => ("a set of shapes", "model train"),
-        None => ("a list of poses", "batch"),
-    })
 }

@@ -120,11 +120,7 @@ fn answers(
     let text = &mut answers.text;
     for (number, &line) in (first..).zip(lines) {
         // Some programs start a text with a byte order mark.
-        let line = if number == 1 {
-            without_mark(line)
-        } else {
-            line
-        };
+        let line = without_mark(line);
         if line.trim_ascii().is_empty() {
             continue;
         }

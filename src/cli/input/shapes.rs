@@ -9,14 +9,12 @@ use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-use taxel_core::figure::{Figure, FigureKind};
+use taxel_core::figure::FigureKind;
 use taxel_core::imprint::Imprint;
 use taxel_core::lock::locked;
-use taxel_core::parameter::Parameter;
 use taxel_core::picture::Picture;
 use taxel_core::quote::{as_argument, shortened_message};
 use taxel_core::recognition::NamedShape;
-use taxel_core::sensor::Sensor;
 use taxel_files::ReadError;
 use taxel_files::formats::file::{is_missing, without_mark};
 use taxel_files::formats::name::folded;
@@ -139,17 +137,8 @@ impl Shelf {
         let LibraryError::Unknown(name) = error else {
             return self.readable().suggestion(error);
         };
-        if let Ok(kind) = name.parse::<FigureKind>() {
-            let figure = Figure::default_of(kind, &Sensor::default());
-            let size = |size: &Parameter| {
-                let value = figure.get(*size)?;
-                Some(format!(",\"{}\":{value}", size.row().key))
-            };
-            let sizes: String = kind.sizes().iter().filter_map(size).collect();
-            return format!(
-                "; {name:?} is a figure, which taxel figure and taxel sweep take; in a set of shapes it is \
-                 {{\"name\":{name:?},\"figure\":{name:?}{sizes}}}"
-            );
+        if name.parse::<FigureKind>().is_ok() {
+            return format!("; {name:?} is a figure, which taxel figure and taxel sweep take");
         }
         match (
             self.readable().suggestion(error),

@@ -6,11 +6,10 @@ use serde_json::value::RawValue;
 use taxel_core::geometry::{Ellipse, Pen, Point, Side, Solid};
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::number::{differing, short};
-use taxel_core::pose::{Anchor, Axis, DecimalRange, Placed, Pose, PoseGrid, Ranges};
 use taxel_core::recognition::{
-    AngleEstimate, Answer, AnswerState, Evidence, Model, Nearest, Noise, PoseEstimate, SearchMethod,
+    AngleEstimate, Answer, AnswerState, Evidence, Model, Nearest, Noise, PlacedSource,
+    PoseEstimate, SearchMethod,
 };
-use taxel_core::sensor::Sensor;
 use taxel_files::formats::value::{self, decimal, deviation, percent};
 
 use crate::cli::output::charset::Charset;
@@ -222,54 +221,17 @@ struct AngleJson {
 
 /// Where the shape of an answer lies.
 pub(crate) struct PoseReport {
-    name: String,
-    estimate: PoseEstimate,
-    corner: [f64; 2],
-    placed: Placed,
+    pub(crate) name: String,
+    pub(crate) estimate: PoseEstimate,
+    /// The top left corner of the imprint's box.
+    pub(crate) corner: [f64; 2],
+    /// The pose nearest to the mean.
+    pub(crate) placed: Option<PlacedSource>,
     /// The side of a cell in mm, if lengths are given in mm too.
-    pitch_mm: Option<f64>,
+    pub(crate) pitch_mm: Option<f64>,
 }
 
 impl PoseReport {
-    /// Returns the pose of a shape of a model that left an imprint; None for an empty imprint. If there is no mean
-    /// angle, the outline is drawn in the middle of the likeliest degrees.
-    pub(crate) fn new(
-        model: &Model,
-        shape: usize,
-        touch: &Imprint,
-        estimate: PoseEstimate,
-        pitch_mm: Option<f64>,
-    ) -> Option<Self> {
-        let bounds = touch.bounds()?;
-        let named = model.shapes().get(shape)?;
-        let [x, y] = estimate.position;
-        let angle = estimate.angle.as_ref().map_or(0.0, |angle| {
-            let (first, count) = angle.shortest_arc;
-            let middle = f64::from(first) + f64::from(count) / 2.0;
-            angle.mean.unwrap_or(middle)
-        });
-        let own = *model.ranges();
-        let still = Ranges::from_fn(|axis| match axis {
-            Axis::ZoomX | Axis::ZoomY => own[axis].part(0..1).unwrap_or(own[axis]),
-            _ => DecimalRange::whole(0),
-        });
-        let source = named.source.clone();
-        let grid = PoseGrid::new(source, Sensor::LARGEST, Anchor::Centre, still).ok()?;
-        let pose = Pose::from_fn(|axis| match axis {
-            Axis::X0 => x,
-            Axis::Y0 => y,
-            Axis::Angle => angle,
-            _ => own[axis].value(0),
-        });
-        Some(Self {
-            name: named.name.clone(),
-            estimate,
-            corner: [f64::from(bounds.left), f64::from(bounds.top)],
-            placed: grid.placed_in(pose),
-            pitch_mm,
-        })
-    }
-
     fn json(&self) -> PoseJson<'_> {
         let estimate = &self.estimate;
         let [x, y] = estimate.position;
@@ -312,8 +274,14 @@ impl PoseReport {
     /// Draws the outline over the touch.
     fn drawn(&self, touch: &Imprint, charset: Charset) -> String {
         let (columns, lines) = (u16::from(touch.columns()), u16::from(touch.rows()));
-        let mut outline = Outline(DotCanvas::new(2 * columns, lines));
-        self.placed.draw(&mut outline);
+        let mut outline = Outline {
+            canvas: DotCanvas::new(2 * columns, lines),
+            by: [0.0; 2],
+        };
+        if let Some(placed) = &self.placed {
+            outline.by = placed.by;
+            placed.source.draw(&mut outline);
+        }
         let (full, empty) = charset.taxels();
         let mut rows = Vec::new();
         for row in 0..touch.rows() {
@@ -321,7 +289,7 @@ impl PoseReport {
             let taxels = (0..touch.columns()).flat_map(|column| taxel(column).chars());
             rows.push(taxels.collect::<Vec<char>>());
         }
-        draw_over(&mut rows, &outline.0, charset);
+        draw_over(&mut rows, &outline.canvas, charset);
         let line = |row: Vec<char>| format!("  {}\n", row.iter().collect::<String>().trim_end());
         rows.into_iter().map(line).collect()
     }
@@ -337,13 +305,17 @@ fn angle_in_words(angle: &AngleEstimate, poses: u64) -> String {
     format!("angle {mean}° ± {spread}°{repeats}; {arc}")
 }
 
-/// Draws an outline. A taxel is two characters wide, so it has four dots in both directions.
-struct Outline(DotCanvas);
+/// Draws an outline, moved by some cells. A taxel is two characters wide, so it has four dots in both directions.
+struct Outline {
+    canvas: DotCanvas,
+    by: [f64; 2],
+}
 
 impl Pen<f64> for Outline {
     fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
-        let place = |point: Point<f64>| (4.0 * point.x, 4.0 * point.y);
-        self.0.line(place(from), place(to));
+        let [dx, dy] = self.by;
+        let place = |point: Point<f64>| (4.0 * (point.x + dx), 4.0 * (point.y + dy));
+        self.canvas.line(place(from), place(to));
     }
 
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {

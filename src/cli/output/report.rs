@@ -28,6 +28,7 @@ use taxel_core::touch::reaches_beyond;
 use taxel_files::formats::{DescribedImprint, json, value};
 
 use crate::cli::output::charset::Charset;
+use crate::cli::output::table;
 
 /// The width of a table, in characters. A single region is never split, even if it is wider.
 const WIDTH: usize = 80;
@@ -130,41 +131,35 @@ fn table_rows(pitch: Option<f64>, holes: bool) -> Vec<Row> {
 fn region_table(regions: &[Description], pitch: Option<f64>, charset: Charset) -> String {
     let holes = regions.iter().any(|it| it.kind == RegionKind::Hole);
     let rows = table_rows(pitch, holes);
-    let labels = charset.column(iter::once("").chain(rows.iter().map(|row| &*row.0)));
-    let column = |(index, region): (usize, &Description)| {
+    let labels: Vec<String> = rows.iter().map(|row| row.0.clone()).collect();
+    let labels = [vec![String::new()], labels].concat();
+    let mut columns = Vec::new();
+    for (index, region) in regions.iter().enumerate() {
         let same = |other: &&Description| other.kind == region.kind;
         let number = regions[..=index].iter().filter(same).count();
         let mut column = vec![format!("{} {number}", region.kind.name())];
         column.extend(rows.iter().map(|(_, descriptor, factor)| {
             let text = value::times((descriptor.measure)(region), *factor, 4);
-            charset.line(text.as_deref().unwrap_or("–")).into_owned()
+            text.unwrap_or("–".to_owned())
         }));
-        let widest = column.iter().map(|cell| cell.chars().count()).max();
-        (widest.unwrap_or(0), column)
-    };
-    let columns: Vec<(usize, Vec<String>)> = regions.iter().enumerate().map(column).collect();
-    let (mut text, mut rest) = (String::new(), &columns[..]);
-    while !rest.is_empty() {
-        let mut used = labels[0].chars().count();
-        let fitting = rest.iter().take_while(|(width, _)| {
-            used += 2 + width;
-            used <= WIDTH
-        });
-        let (block, others) = rest.split_at(fitting.count().max(1));
-        for (index, label) in labels.iter().enumerate() {
-            let cells: String = block
-                .iter()
-                .map(|(width, column)| format!("  {:>width$}", column[index]))
-                .collect();
-            text += format!("{label}{cells}").trim_end();
-            text.push('\n');
-        }
-        rest = others;
-        if !rest.is_empty() {
-            text.push('\n');
-        }
+        columns.push(column);
     }
-    text
+    let widest = |cells: &mut dyn Iterator<Item = &String>| {
+        let widths = cells.map(|cell| cell.chars().count());
+        widths.max().unwrap_or(0)
+    };
+    let room = WIDTH.saturating_sub(widest(&mut labels.iter()));
+    let most = room / (2 + widest(&mut columns.iter().flatten()));
+    let block = |block: &[Vec<String>]| {
+        let row = |(index, label): (usize, &String)| {
+            let cells = block.iter().map(|column| column[index].clone());
+            iter::once(label.clone()).chain(cells).collect()
+        };
+        let rows: Vec<Vec<String>> = labels.iter().enumerate().map(row).collect();
+        table::table(&rows, &[0], charset)
+    };
+    let blocks: Vec<String> = columns.chunks(most.max(1)).map(block).collect();
+    blocks.join("\n")
 }
 
 #[cfg(test)]

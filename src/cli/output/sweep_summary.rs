@@ -1,5 +1,6 @@
 //! The summary of a sweep or a merge: as text, and as one line of JSON.
 
+use std::iter;
 use std::time::Duration;
 
 use serde::{Serialize, Serializer};
@@ -10,6 +11,7 @@ use taxel_files::formats::json;
 use taxel_files::formats::value::{counted, grouped};
 
 use crate::cli::output::charset::Charset;
+use crate::cli::output::table::table;
 
 /// Pairs that JSON has as an object, in their order.
 struct Object<'a, V>(Vec<(&'a str, V)>);
@@ -76,10 +78,10 @@ fn text(result: &SweepResult, took: Duration, charset: Charset) -> String {
     let ranges = grid.axes();
     let ranges = ranges.filter(|&axis| grid.counts()[axis] > 1 || !axis.is_zoom());
     let classes = atlas.distinct_classes();
-    let mut text = format!(
+    let text = format!(
         "{}{part}: {}\n\
          {}, {} up to shifts, {} up to quarter turns and mirror images too\n\
-         {} cut off by the sensor, {} without an imprint; {:.2} s\n\n{:16}",
+         {} cut off by the sensor, {} without an imprint; {:.2} s\n\n",
         counted(result.poses, "pose"),
         ranges_in_words(ranges, grid.ranges()),
         counted(atlas.len() as u64, "distinct imprint"),
@@ -88,20 +90,19 @@ fn text(result: &SweepResult, took: Duration, charset: Charset) -> String {
         counted(result.partly_off, "pose"),
         counted(atlas.empty_poses(), "pose"),
         took.as_secs_f64(),
-        "",
     );
-    for column in STATISTIC_COLUMNS {
-        text += &format!("{:>11}", column.title);
-    }
-    for statistic in &result.statistics {
-        text += &format!("\n{:<16}", statistic.feature.key);
-        for column in STATISTIC_COLUMNS {
-            let value = (column.value)(statistic);
-            let value = value.map_or("–".to_owned(), |value| format!("{value:.4}"));
-            text += &format!("{value:>11}");
-        }
-    }
-    charset.lines(&text) + "\n"
+    let titles = STATISTIC_COLUMNS
+        .iter()
+        .map(|column| column.title.to_owned());
+    let mut rows = vec![iter::once(String::new()).chain(titles).collect::<Vec<_>>()];
+    rows.extend(result.statistics.iter().map(|row| {
+        let values = STATISTIC_COLUMNS.iter().map(|column| {
+            let value = (column.value)(row);
+            value.map_or("–".to_owned(), |value| format!("{value:.4}"))
+        });
+        iter::once(row.feature.key.clone()).chain(values).collect()
+    }));
+    charset.lines(&text) + &table(&rows, &[0], charset)
 }
 
 pub(crate) fn ranges_in_words(axes: impl Iterator<Item = Axis>, ranges: &Ranges) -> String {

@@ -20,7 +20,6 @@ use crate::cli::commands::model::keeping::card;
 use crate::cli::commands::model::{
     SetFlags, existing, folder, model_file, parse_positions, trained,
 };
-use crate::cli::commands::sweep::grid_refused;
 use crate::cli::failure::Failure;
 use crate::cli::input::shapes;
 use crate::cli::output::charset::note;
@@ -181,10 +180,10 @@ impl Train {
             rows: is_given(Parameter::Rows).then(|| sensor.rows()),
             ..SensorSides::at_least(LEAST_SIDE)
         };
-        check_given(given, &sides.largest()).map_err(grid_refused)?;
+        check_given(given, &sides.largest())?;
         let sources: Vec<&Source> = shapes.iter().map(|shape| &shape.source).collect();
         let reach = Reach::of_all(sources.iter().copied(), anchor, given);
-        let reach = reach.map_err(grid_refused)?;
+        let reach = reach?;
         let step = self.positions.unwrap_or(CellPositions::FINE).step();
         let (sensor, ranges) = reach.best_sensor(&sources, given, sides, step);
         Ok((self.sensor.sensor(sensor)?, anchor, ranges))
