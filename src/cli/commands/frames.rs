@@ -123,7 +123,7 @@ fn of_answers(arg: Arg) -> Arg {
     match arg.get_id().as_str() {
         "tare" | "gain" | "flip" | "turn" | "at_least" | "percent" | "low" | "high"
         | "deviations" | "least" => arg.requires("answered"),
-        "model" | "noise" | "pitch" => arg.requires("choice").conflicts_with("noise_report"),
+        "model" | "noise" | "pitch_mm" => arg.requires("choice").conflicts_with("noise_report"),
         "save" => arg
             .requires("choice")
             .conflicts_with_all(["all", "noise_report"]),
