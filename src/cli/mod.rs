@@ -35,7 +35,7 @@ pub(crate) mod arguments;
 
 pub mod settings;
 
-mod commands;
+pub(crate) mod commands;
 
 use std::ffi::OsString;
 use std::io::{self, Write};

@@ -110,6 +110,12 @@ impl FrameFlags {
         FrameSize::of_sides(self.columns, self.rows)
     }
 
+    /// Whether mask or gain come from standard input.
+    pub(crate) fn reads_standard(&self) -> bool {
+        let files = [&self.mask, &self.gain].into_iter().flatten();
+        files.into_iter().any(|path| path.as_os_str() == "-")
+    }
+
     /// How frames are processed; `usual` says what the flags leave open. Reads mask and gain.
     pub(crate) fn pipeline(&self, usual: &Pipeline) -> Result<Pipeline, Failure> {
         let flips = |axis| self.flip.as_ref().is_some_and(|flip| flip.contains(axis));

@@ -1,16 +1,11 @@
 //! Requests to the live page, and reports from its source.
 
-use std::fmt;
-use std::ops::RangeInclusive;
-use std::str::FromStr;
 use std::sync::Arc;
 
-use taxel_core::frame::{FrameError, FrameSize, Rule, RuleOrigin, SetRule};
-use taxel_core::parameter::number;
-use taxel_files::acquire::{AcquireOptions, FrameSource, Playback};
-use taxel_files::formats::recording::Format;
-use taxel_files::storage::ModelChoice;
+use taxel_core::frame::{FrameSize, Rule};
+use taxel_files::acquire::FrameSource;
 
+use crate::cli::commands::frame_flags::WatchFlags;
 pub use crate::frames::WatchRequest;
 pub use crate::frames::recording::RecordedFrames;
 use crate::tui::keys::key::Arrow;
@@ -65,52 +60,20 @@ pub enum LiveEvent {
 
 /// What follows `:watch`: a source, whose name may contain spaces, then flags as on the command line:
 /// `grip 2.csv --rows 4 --columns 5 --at-least 10`.
-#[derive(Clone, Debug, Default, PartialEq, clap::Args)]
+#[derive(Clone, Debug, Default, clap::Args)]
 pub struct NamedSource {
     /// The words of the name: a path, `tcp://HOST:PORT`, or `-` for standard input.
     #[arg(value_name = "SOURCE")]
     name: Vec<String>,
-    #[arg(long, requires = "columns", value_parser = side)]
-    rows: Option<u16>,
-    #[arg(long, requires = "rows", value_parser = side)]
-    columns: Option<u16>,
-    #[arg(long, value_parser = Format::of_stream)]
-    format: Option<&'static Format>,
-    #[arg(long, value_parser = |text: &str| within(text, &AcquireOptions::BAUDS))]
-    baud: Option<u32>,
-    #[arg(long)]
-    channel: Option<String>,
-    #[arg(long, value_parser = speed)]
-    speed: Option<f64>,
-    #[arg(long, value_parser = |text: &str| rule(text, Rule::at_least), allow_hyphen_values = true)]
-    at_least: Option<Rule>,
-    #[arg(long, value_parser = |text: &str| rule(text, Rule::percent), conflicts_with = "at_least")]
-    percent: Option<Rule>,
-    #[arg(long, value_parser = |text: &str| Ok::<_, String>(ModelChoice::from_text(text)))]
-    model: Option<ModelChoice>,
+    #[command(flatten)]
+    flags: WatchFlags,
 }
 
-fn within<N: FromStr + PartialOrd + fmt::Display>(
-    text: &str,
-    range: &RangeInclusive<N>,
-) -> Result<N, String> {
-    let number = text.parse().ok().filter(|number| range.contains(number));
-    let (first, last) = (range.start(), range.end());
-    number.ok_or_else(|| format!("expected a whole number from {first} to {last}"))
-}
-
-fn side(text: &str) -> Result<u16, String> {
-    within(text, &FrameSize::SIDES)
-}
-
-fn speed(text: &str) -> Result<f64, String> {
-    let speed = number::read(text).filter(|&speed| Playback::allows(speed));
-    speed.ok_or_else(|| format!("expected {}", Playback::SPEEDS))
-}
-
-fn rule(text: &str, of: fn(f64) -> Result<Rule, FrameError>) -> Result<Rule, String> {
-    let value = number::read(text).ok_or_else(|| number::complaint(text))?;
-    of(value).map_err(|error| error.to_string())
+impl PartialEq for NamedSource {
+    /// What was typed never changes.
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self, other)
+    }
 }
 
 impl NamedSource {
@@ -125,32 +88,25 @@ impl NamedSource {
         self.name.is_empty()
     }
 
-    /// Returns the request for this source; `settings` provides what is not given.
-    pub fn request(&self, settings: &WatchRequest) -> WatchRequest {
-        let mut request = settings.clone();
-        request.source = FrameSource::named(&self.name.join(" "));
-        request.baud_named = self.baud.is_some();
-        let options = &mut request.options;
-        options.size = FrameSize::of_sides(self.columns, self.rows).or(options.size);
-        options.format = self.format.or(options.format);
-        options.baud = self.baud.or(options.baud);
-        options.channel = self.channel.clone().or(options.channel.take());
-        if let Some(speed) = self.speed {
-            options.playback = Playback::paced(speed, options.playback.repeats());
+    pub fn source(&self) -> FrameSource {
+        FrameSource::named(self.name.join(" "))
+    }
+
+    /// Returns the request for this source; `settings` provides what is not given. Reads files.
+    pub fn request(self, settings: &WatchRequest) -> Result<WatchRequest, String> {
+        if self.flags.frames.reads_standard() {
+            return Err("a mask or gain from standard input is for the command line".to_owned());
         }
-        request.model = self.model.clone().or(request.model);
-        if let Some(rule) = self.at_least.or(self.percent) {
-            let processing = &mut request.pipeline.processing;
-            let (least, from) = (processing.least, RuleOrigin::Flag);
-            processing.apply_rule(Some(SetRule { rule, least, from }));
-        }
-        request
+        let request = self.flags.request(self.name.join(" "), settings);
+        request.map_err(|failure| failure.text)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use clap::{Args, FromArgMatches};
+    use taxel_files::acquire::Playback;
+    use taxel_files::storage::ModelChoice;
 
     use super::*;
 
@@ -161,11 +117,9 @@ mod tests {
             let command =
                 NamedSource::augment_args(clap::Command::new("watch").no_binary_name(true));
             let matches = command.try_get_matches_from(text.split_whitespace());
-            matches.map(|found| {
-                NamedSource::from_arg_matches(&found)
-                    .expect("read")
-                    .request(&settings)
-            })
+            let matches = matches.map_err(|error| error.to_string())?;
+            let source = NamedSource::from_arg_matches(&matches).expect("read");
+            source.request(&settings)
         };
         let whole = request(
             "my run.csv --rows 4 --columns=5 --baud 9600 --at-least 10 --channel left --speed 0.5 --model figures-30",

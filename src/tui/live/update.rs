@@ -359,17 +359,19 @@ pub fn set_aside(app: &mut App) {
 
 /// Requests a check of a source; it is watched if it can be read.
 pub fn check_source(app: &mut App, source: &NamedSource) -> Option<Effect> {
-    let request = source.request(&app.watch_settings);
+    let named = source.source();
     // A second page would have no bytes to read, and the first one and its history would be gone.
-    let reads_standard = |request: &WatchRequest| request.source == FrameSource::Standard;
-    if reads_standard(&request) && page(app).is_some_and(|page| reads_standard(&page.request)) {
+    if named == FrameSource::Standard && page(app).is_some_and(|page| page.request.source == named)
+    {
         refuse(app, READ_ONCE);
         return None;
     }
     let (models, access) = (app.jobs.models().clone(), Arc::clone(&app.jobs.access));
+    let (source, settings) = (source.clone(), app.watch_settings.clone());
     app.jobs
-        .read(format!("Opening {}", request.name()), move |_| {
-            let found = files::watchable(Arc::new(request), &models, &access);
+        .read(format!("Opening {}", named.name()), move |_| {
+            let found = source.request(&settings);
+            let found = found.and_then(|own| files::watchable(Arc::new(own), &models, &access));
             answer(|app| match found {
                 Ok(request) => {
                     let effect = watch(app, &request);
