@@ -8,8 +8,6 @@
 //! In scripts and tests, the same closures run in place, and their answers are applied after the message, in order.
 //! A disk may hang: keys go on, the screen says what it waits for, and the end of the program does not wait for ever.
 
-#![allow(dead_code, reason = "sweeps and models do not run here yet")]
-
 use std::collections::{HashMap, VecDeque};
 use std::fmt;
 use std::io;
@@ -27,18 +25,17 @@ use taxel_core::progress::{Progress, stop_if};
 use taxel_files::formats::StoredShape;
 use taxel_files::formats::file::system_reason;
 use taxel_files::storage::{
-    Expected, FileError, Journal, Library, LibraryError, ModelCache, Orphan,
+    Expected, FileError, Journal, Library, LibraryError, ModelCache, ModelFolder, Models, Orphan,
 };
 use tempfile::TempDir;
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::state::{App, Notice};
 use crate::tui::app::unsaved::UnsavedWork;
-use crate::tui::explore::message::SweepProgress;
+use crate::tui::explore::work::SweepProgress;
 use crate::tui::runtime::disk::files::WriteAccess;
+use crate::tui::runtime::frames::FrameWatcher;
 use crate::tui::runtime::reminders::Reminders;
-use crate::tui::runtime::work::models::ModelStore;
-use crate::tui::runtime::work::workers::Workers;
 
 /// What a job leaves to do, on the thread of the screen.
 pub type Answer = Box<dyn FnOnce(&mut App) + Send>;
@@ -136,7 +133,8 @@ pub struct Jobs {
     pub(crate) adopted: Vec<Orphan>,
     /// What is remembered from run to run; None if nothing is.
     pub(crate) reminders: Option<Reminders>,
-    pub(crate) workers: Workers,
+    pub(crate) models: Models,
+    pub(crate) frames: FrameWatcher,
     /// The disk's thread, once something was asked of it.
     disk: Option<(Sender<DiskWork>, JoinHandle<()>)>,
     keeps_unsaved: bool,
@@ -181,7 +179,11 @@ impl Jobs {
             orphans: Vec::new(),
             adopted: Vec::new(),
             reminders: None,
-            workers: Workers::with(ModelStore::beside(&library)),
+            models: Models {
+                folder: Some(ModelFolder::of(library.folder())),
+                cache: None,
+            },
+            frames: FrameWatcher::default(),
             disk: None,
             keeps_unsaved: false,
             library,
@@ -234,11 +236,7 @@ impl Jobs {
     #[must_use]
     pub fn with_threads(mut self, wake: Wake) -> Self {
         self.post.wake = Some(wake);
-        let post = self.post.clone();
-        let events = move |event| {
-            post.answer(|app| crate::tui::app::update::on_worker(app, event));
-        };
-        self.workers.post_to(Arc::new(events));
+        self.frames.post = Some(self.post.clone());
         self
     }
 
@@ -247,7 +245,6 @@ impl Jobs {
     #[must_use]
     pub fn confined_to(mut self, folder: PathBuf) -> Self {
         self.access = Arc::new(WriteAccess::below(folder));
-        self.workers.access = Arc::clone(&self.access);
         self
     }
 
@@ -259,13 +256,12 @@ impl Jobs {
 
     pub fn limit_poses(&mut self, poses: u64) {
         self.limit = Some(poses);
-        self.workers.stop_after(poses);
     }
 
     #[must_use]
     pub fn with_model_cache(mut self, cache: Option<ModelCache>) -> Self {
         if let Some(cache) = cache {
-            self.workers.models.store.cache = Some(cache);
+            self.models.cache = Some(cache);
         }
         self
     }
@@ -275,10 +271,6 @@ impl Jobs {
     pub fn without_reminders(mut self) -> Self {
         self.reminders = None;
         self
-    }
-
-    pub(crate) fn models(&self) -> &ModelStore {
-        &self.workers.models.store
     }
 
     /// Changes something on the disk; `what` names it, as in "Saving blob". It is never dropped.
@@ -338,7 +330,7 @@ impl Jobs {
         self.stop(slot);
         self.begun += 1;
         let (number, stop) = (self.begun, Arc::<AtomicBool>::default());
-        let has_threads = self.post.wake.is_some();
+        let has_threads = self.has_threads();
         let progress = JobProgress {
             slot,
             number,
@@ -389,6 +381,11 @@ impl Jobs {
     pub(crate) fn forget(&mut self, slot: Slot) {
         self.stop(slot);
         self.slots.remove(&slot);
+    }
+
+    /// False in scripts and tests, where nothing may depend on time.
+    pub(crate) fn has_threads(&self) -> bool {
+        self.post.wake.is_some()
     }
 
     pub(crate) fn is_running(&self, slot: Slot) -> bool {

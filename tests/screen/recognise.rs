@@ -85,12 +85,12 @@ fn a_model_that_cannot_be_read_does_not_block_the_next_one() {
     // On the live page, too, the model before it returns, and the next step goes past it.
     press(
         &mut session,
-        "<Esc>:watch tests/scripts/touch.csv<Enter>nnn",
+        "<Esc>:watch tests/scripts/touch.csv<Enter>ooo",
     );
     session.frames(6);
-    press(&mut session, "+n");
+    press(&mut session, "+o");
     shows(&session, &["! ", "broken.npz: ", "model      shapes"]);
-    press(&mut session, "n");
+    press(&mut session, "o");
     shows(
         &session,
         &["shapes are named by model my parts", "model      my parts"],
@@ -101,9 +101,9 @@ fn a_model_that_cannot_be_read_does_not_block_the_next_one() {
 fn own_models_name_the_shapes_of_frames() {
     let folder = tempfile::tempdir().expect("a folder");
     let world = World::new(with_model(folder.path()));
-    let mut page = started(world, ":watch tests/scripts/touch.csv<Enter>nnnn");
+    let mut page = started(world, ":watch tests/scripts/touch.csv<Enter>oooo");
     shows(&page, &["shapes are named by model my parts"]);
-    press(&mut page, "n");
+    press(&mut page, "o");
     shows(&page, &["shapes are not named"]);
 }
 

@@ -16,7 +16,7 @@ use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, NarrowPane};
 use crate::tui::app::status;
 use crate::tui::app::view::Panes;
-use crate::tui::explore::message::ExploreMessage;
+use crate::tui::explore::ExploreMessage;
 use crate::tui::keys::default_keys::MENU;
 use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::{Binding, Context, Keymap};

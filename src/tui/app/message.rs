@@ -3,18 +3,13 @@
 //! A key becomes a message by the table of keys, a `:` command by its text, a click by what it points at. Effects
 //! answer with messages, too. A script sends the same ones.
 
-use std::sync::Arc;
-use std::time::Duration;
-
-use taxel_core::pose::{PoseGrid, PoseIndex};
 use taxel_files::formats::Name;
 
 use crate::tui::app::document::Document;
-use crate::tui::explore::angles::AngleCurve;
-use crate::tui::explore::message::{ExploreMessage, Findings, SweepProgress};
+use crate::tui::explore::ExploreMessage;
 use crate::tui::keys::key::{Arrow, Key};
 use crate::tui::live::message::{LiveEvent, LiveMessage};
-use crate::tui::recognise::state::{RecogniseMessage, RecognitionEvent};
+use crate::tui::recognise::RecogniseMessage;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {
@@ -166,19 +161,8 @@ pub enum LibraryRequest {
     Restore(Option<String>),
 }
 
-/// An event of a worker. It carries the number of its work; events of work that is no longer waited for are dropped.
+/// An event of a source of frames, with its number.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WorkerEvent {
-    Progress(u64, SweepProgress),
-    Estimate(Box<PoseGrid>, Duration),
-    /// A sweep is over, at its end or because it was stopped.
-    Swept(u64, Arc<Findings>),
-    Angles(Arc<Findings>, PoseIndex, Result<Arc<AngleCurve>, String>),
-    Written(u64, String),
-    /// The file was not written, because a file of that name exists.
-    Exists(u64, String),
-    Failed(u64, String),
-    Recognition(RecognitionEvent),
     Live(u64, LiveEvent),
-    Refused(String),
 }

@@ -28,7 +28,7 @@ use crate::tui::live::message::WatchRequest;
 use crate::tui::live::state::Live;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::matrix::view::grid;
-use crate::tui::recognise::state::Recognition;
+use crate::tui::recognise::page::Recognition;
 use crate::tui::runtime::effect::TerminalEffect;
 use crate::tui::widget::theme::Theme;
 

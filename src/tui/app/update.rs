@@ -14,7 +14,7 @@ use crate::tui::jobs::Answer;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::Context;
-use crate::tui::runtime::effect::{Effect, TerminalEffect};
+use crate::tui::runtime::effect::TerminalEffect;
 use crate::tui::runtime::{self, reminders};
 use crate::tui::{explore, live, matrix, recognise};
 
@@ -25,15 +25,18 @@ const MOST_SAID: usize = 300;
 pub fn update(app: &mut App, message: Message) -> Option<TerminalEffect> {
     changing(app, |app| handle(app, message));
     loop {
+        recognise::page::follow(app);
         app.jobs.settle(app.pages.len());
         if let Some(answer) = app.jobs.next_answer(app.pages.len()) {
             changing(app, |app| on_answer(app, answer));
-        } else if let Some(effect) = next_work(app) {
+        } else if let Some(effect) = live::update::next_work(app) {
             changing(app, |app| runtime::perform(app, Some(effect)));
         } else {
             break;
         }
     }
+    explore::work::close_if_failed(app);
+    recognise::page::stop_if_failed(app);
     let works = app.unsaved_work();
     app.jobs.keep(works);
     reminders::remember(app);
@@ -45,14 +48,6 @@ fn changing(app: &mut App, change: impl FnOnce(&mut App)) {
     change(app);
     app.read();
     app.follow(&before);
-}
-
-/// Returns the next piece of work that an open page needs for its present state, such as a name for the imprint it
-/// shows; None if it needs no more.
-fn next_work(app: &mut App) -> Option<Effect> {
-    let work = recognise::update::next_work(app);
-    let work = work.or_else(|| explore::work::next_work(app));
-    work.or_else(|| live::update::next_work(app))
 }
 
 fn handle(app: &mut App, message: Message) {
@@ -184,34 +179,8 @@ fn unknown(app: &mut App, key: Key) {
 
 /// Handles an event of work that is no closure yet.
 pub fn on_worker(app: &mut App, event: WorkerEvent) {
-    let effect = worked(app, event);
-    runtime::perform(app, effect);
-}
-
-fn worked(app: &mut App, event: WorkerEvent) -> Option<Effect> {
-    match event {
-        WorkerEvent::Progress(number, progress) => {
-            if !explore::work::on_progress(app, number, progress) {
-                recognise::update::on_progress(app, number, progress);
-            }
-        }
-        WorkerEvent::Estimate(grid, time) => explore::work::on_estimate(app, &grid, time),
-        WorkerEvent::Swept(number, findings) => explore::work::take_findings(app, number, findings),
-        WorkerEvent::Angles(findings, place, curve) => {
-            explore::work::on_angles(app, &findings, place, curve);
-        }
-        WorkerEvent::Written(number, name) => explore::work::on_written(app, number, &name),
-        WorkerEvent::Exists(number, name) => explore::work::on_existing(app, number, &name),
-        WorkerEvent::Failed(number, reason) => {
-            if !explore::work::on_failure(app, number, &reason) {
-                return recognise::update::on_failure(app, number, &reason);
-            }
-        }
-        WorkerEvent::Recognition(event) => return recognise::update::on_worker(app, event),
-        WorkerEvent::Live(number, event) => live::update::on_worker(app, number, &event),
-        WorkerEvent::Refused(reason) => refuse(app, reason),
-    }
-    None
+    let WorkerEvent::Live(number, event) = event;
+    live::update::on_worker(app, number, &event);
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The histogram tab: how often each value of the chosen descriptor occurs.
 //!
 //! ```text
-//! na: active taxels, cells                             the descriptor and its unit
+//! NA (na): active taxels                               the descriptor and its unit
 //! mean 52.3  sd 1.2  min 49  max 56  no value: 0 poses
 //! 49 |██                      1,204   0.12 %           an interval, a bar, poses, their share
 //! 50 |█████▌                  3,611   0.36 %
@@ -16,36 +16,33 @@ use taxel_core::description::Dimension;
 use taxel_files::formats::value::{counted, grouped, percentage};
 
 use crate::tui::app::page::Wheel;
-use crate::tui::explore::results::Results;
-use crate::tui::explore::view::{ResultsTab, choose_descriptor};
+use crate::tui::explore::results::{Results, Tab, choose_descriptor, described};
 use crate::tui::keys::keymap::Context;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-const NUMBER: usize = 9;
-
-pub static TAB: ResultsTab = ResultsTab {
+pub(super) static TAB: Tab = Tab {
     title: "histogram",
     context: Context::Histogram,
     filtered: false,
+    wheel: Wheel::Step,
     drawing: None,
     table: Some(table),
-    wheel: Wheel::Step,
     draw,
     click: |_, _, _| None,
-    update: choose_descriptor,
+    on: choose_descriptor,
 };
 
 /// Three lines of the tab have no bar: the title, the numbers, and a spare one.
 fn histogram(results: &Results, area: Rect) -> Histogram {
-    let room = usize::from(area.height.saturating_sub(3));
-    let (atlas, values) = (&results.sweep().atlas, results.values());
-    Histogram::of(atlas, results.feature(), values, room.max(1))
+    let room = usize::from(area.height.saturating_sub(3)).max(1);
+    let (atlas, chosen) = (&results.sweep().atlas, &results.chosen);
+    Histogram::of(atlas, chosen.feature(), &chosen.values, room)
 }
 
 fn table(results: &Results, area: Rect) -> String {
-    let (histogram, key) = (histogram(results, area), &results.feature().key);
-    let decimals = histogram.decimals();
+    let histogram = histogram(results, area);
+    let (key, decimals) = (&results.chosen.feature().key, histogram.decimals());
     let mut text = "descriptor,from,to,poses\n".to_owned();
     for (bin, poses) in histogram.poses.iter().enumerate() {
         let (from, to) = (histogram.from(bin), histogram.from(bin + 1));
@@ -58,9 +55,8 @@ fn table(results: &Results, area: Rect) -> String {
 }
 
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
-    let (result, feature) = (results.sweep(), results.feature());
-    let statistic = &result.statistics[results.feature];
-    let number = |value| theme.number(value, NUMBER);
+    let feature = results.chosen.feature();
+    let statistic = &results.sweep().statistics[results.chosen.number];
     let unit = match feature.descriptor.dimension {
         Dimension::Count => "",
         Dimension::Length => ", cells",
@@ -68,9 +64,10 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
         Dimension::Direction => ", degrees",
         _ => ", ratio",
     };
-    let title = feature.label() + unit;
+    let title = described(feature) + unit;
     write::text(buffer, area, theme, &title, Role::Title);
     let histogram = histogram(results, area);
+    let number = |value| theme.number(value, 9);
     let facts = format!(
         "mean {}  sd {}  min {}  max {}  no value: {}",
         number(statistic.mean),
@@ -79,21 +76,13 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
         number(statistic.max),
         counted(histogram.without, "pose")
     );
-    let facts_row = write::row(area, 1);
-    write::text(buffer, facts_row, theme, &facts, Role::Text);
+    write::text(buffer, write::row(area, 1), theme, &facts, Role::Text);
     if histogram.poses.is_empty() {
         let text = format!("{}  no pose has a value", theme.none());
-        let row = write::row(area, 2);
-        write::text(buffer, row, theme, &text, Role::Quiet);
-        return None;
+        write::text(buffer, write::row(area, 2), theme, &text, Role::Quiet);
     }
-    bars(
-        theme,
-        &histogram,
-        feature.descriptor.dimension,
-        buffer,
-        write::below(area, 2),
-    );
+    let unit = feature.descriptor.dimension;
+    bars(theme, &histogram, unit, buffer, write::below(area, 2));
     None
 }
 
@@ -117,27 +106,25 @@ fn bars(theme: &Theme, histogram: &Histogram, unit: Dimension, buffer: &mut Buff
     let most = histogram.poses.iter().copied().fold(1, u64::max);
     let count = grouped(most).len();
     let all: u64 = histogram.poses.iter().sum::<u64>() + histogram.without;
-    let used = longest + 2 + 1 + count + 9;
-    let room = usize::from(area.width).saturating_sub(used);
+    let room = usize::from(area.width).saturating_sub(longest + count + 12);
     let [full, half, _] = theme.bar();
     for (index, (label, &poses)) in labels.iter().zip(&histogram.poses).enumerate() {
         let halves = u128::from(poses) * 2 * room as u128 / u128::from(most);
-        let halves = usize::try_from(halves)
-            .unwrap_or(2 * room)
-            .max(usize::from(poses > 0));
+        let halves = usize::try_from(halves).unwrap_or(2 * room);
+        let halves = halves.max(usize::from(poses > 0));
         let mut bar = full.to_string().repeat(halves / 2);
         if halves % 2 == 1 && room > 0 {
             bar.push(half);
         }
         #[expect(clippy::cast_precision_loss, reason = "for reading")]
         let share = percentage(poses as f64 / all.max(1) as f64, 2);
-        let label = format!("{label:>longest$} |");
-        let bar = format!("{bar:room$}");
-        let numbers = format!(" {:>count$} {share:>6} %", grouped(poses));
         let pieces = [
-            (label.as_str(), Role::Quiet),
-            (bar.as_str(), Role::Chosen),
-            (numbers.as_str(), Role::Text),
+            (&*format!("{label:>longest$} |"), Role::Quiet),
+            (&*format!("{bar:room$}"), Role::Chosen),
+            (
+                &*format!(" {:>count$} {share:>6} %", grouped(poses)),
+                Role::Text,
+            ),
         ];
         write::line(buffer, write::row(area, index), theme, pieces);
     }

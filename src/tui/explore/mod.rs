@@ -1,38 +1,89 @@
-//! Explore: every imprint of a shape. Here are the form of ranges, the sweep in progress, the tabs of its results,
-//! and their export.
+//! Explore: every imprint of a shape.
 //!
 //! ```text
-//! message    requests by keys and commands, and findings of a sweep
-//! ranges     the form                                     running: work in progress
-//! results    the findings, and what is shown of them
-//! prompts    handles messages in filter and mark
-//! imprints  statistics  histogram  map  scatter  angles   the tabs
-//! work       from the form to the results                 update: what keys do over the results
-//! view       tabs, summary, and the tab
+//! ranges    the form: what to sweep                       work      the sweep or the export in progress
+//! results   a page of six tabs over what was found        export    the prompts: filter of the list, name of a file
+//! imprints  statistics  histogram  map  scatter  angles   the tabs: each draws, exports and handles what is its own
 //! ```
 
-pub mod message;
+pub(crate) mod angles;
+pub(crate) mod export;
+mod histogram;
+mod imprints;
+mod map;
+pub(crate) mod ranges;
+pub(crate) mod results;
+mod scatter;
+mod statistics;
+pub(crate) mod work;
 
-pub mod ranges;
+use taxel_core::atlas::{DistinctClasses, SortDirection, SortKey, sorted};
+use taxel_core::pose::PoseGrid;
+use taxel_core::source::Source;
+use taxel_core::sweep::SweepResult;
 
-pub mod results;
+/// What a sweep found. It never changes, and is shared with workers that write it to files.
+#[derive(Debug)]
+pub struct Findings {
+    pub(crate) sweep: SweepResult,
+    classes: DistinctClasses,
+    by_poses: Vec<u32>,
+}
 
-pub mod imprints;
+impl Findings {
+    pub(crate) fn new(sweep: SweepResult) -> Self {
+        Self {
+            classes: sweep.atlas.distinct_classes(),
+            by_poses: sorted(&sweep.atlas, SortKey::Poses, SortDirection::Descending),
+            sweep,
+        }
+    }
+}
 
-pub mod statistics;
+impl PartialEq for Findings {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self, other)
+    }
+}
 
-pub mod histogram;
+fn name_of(source: &Source) -> &str {
+    let stored = match source {
+        Source::Figure(_) => None,
+        Source::Picture(picture) => picture.name(),
+    };
+    stored.unwrap_or(source.kind_name())
+}
 
-pub mod map;
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExploreTab {
+    Imprints,
+    Statistics,
+    Histogram,
+    Map,
+    Scatter,
+    Angles,
+}
 
-pub mod scatter;
-
-pub mod angles;
-
-pub mod view;
-
-pub mod work;
-
-pub mod prompts;
-
-pub mod update;
+/// Numbers say how many further on something is; negative goes back.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ExploreMessage {
+    Open,
+    Ranges,
+    Start(Box<PoseGrid>),
+    Stop,
+    Tab(ExploreTab),
+    NextTab(i8),
+    Feature(i8),
+    /// To the heading or the horizontal descriptor to the right.
+    Columns(i8),
+    Sort,
+    Filter,
+    Find,
+    Follow,
+    /// A click on a place of a tab: a heading, x0 and y0 of a map, an angle.
+    Point(u64, u64),
+    Angle(i8),
+    /// To the next zoom of a picture.
+    Zoom,
+    Export,
+}

@@ -1,245 +1,288 @@
-//! The results of a sweep, and the state of their tabs: the open one, descriptor, list, cursor of the map.
+//! The results of a sweep: a page of six tabs.
 //!
-//! The findings never change, and are shared with workers that write them to files. The tabs that show a descriptor
-//! show the same one, which the points have as their vertical axis; the list and the map lead to each other.
+//! ```text
+//!  1 imprints   2 statistics   3 histogram   4 map …   the tabs
+//! hexagon: 1,000 poses, 87 distinct imprints           what was swept, and how much was found
+//!                                                      the open tab
+//! ```
+//! The tabs that show a descriptor show the same one, and the list and the map lead to each other. Results of a
+//! stopped sweep say that they are only a part. Nothing here changes the document, so there is nothing to undo, until
+//! Enter puts a pose onto the matrix.
 
 use std::sync::Arc;
 
-use taxel_core::atlas::{AtlasEntry, AtlasFilter, Feature, features};
-use taxel_core::imprint::Imprint;
-use taxel_core::pose::{Axis, Pose, PoseIndex};
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use taxel_core::atlas::{AtlasEntry, Feature, features};
+use taxel_core::index::wide;
+use taxel_core::pose::{Axis, PoseIndex};
 use taxel_core::sweep::SweepResult;
 use taxel_core::touch::Plane;
 use taxel_files::formats::value::{counted, grouped};
 
-use crate::tui::explore::angles::{AngleCurve, AngleSearch, zooms_of};
+use crate::tui::app::change::{change, compare_with, inform, let_go, refuse};
+use crate::tui::app::document::{Document, Reading};
+use crate::tui::app::message::Message;
+use crate::tui::app::page::{Flow, Page, Slot, Wheel};
+use crate::tui::app::state::App;
+use crate::tui::explore::angles::{AngleCurve, zooms_of};
+use crate::tui::explore::export::{ExportDialog, FilterDialog};
 use crate::tui::explore::imprints::ImprintList;
-use crate::tui::explore::map::layout::VisibleImprints;
-use crate::tui::explore::message::{ExploreTab, Findings, ListColumn, name_of};
-use crate::tui::widget::write::around;
+use crate::tui::explore::map::MapState;
+use crate::tui::explore::work::{find_angles, open_ranges};
+use crate::tui::explore::{
+    ExploreMessage, ExploreTab, Findings, angles, histogram, imprints, map, name_of, scatter,
+    statistics,
+};
+use crate::tui::keys::action;
+use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::widget::rows::moved;
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write::{self, around, narrow};
 
-const X_FEATURE: usize = 7;
+/// A tab. Its functions get the area below the summary.
+pub(super) struct Tab {
+    pub(super) title: &'static str,
+    pub(super) context: Context,
+    /// Whether it shows only what the filter keeps.
+    pub(super) filtered: bool,
+    pub(super) wheel: Wheel,
+    pub(super) drawing: Option<fn(&Results) -> Result<String, String>>,
+    /// None for the list of imprints, whose file has all imprints, and for tabs with a drawing.
+    pub(super) table: Option<fn(&Results, Rect) -> String>,
+    pub(super) draw: fn(&Results, &Theme, &mut Buffer, Rect) -> Option<Position>,
+    pub(super) click: fn(&Results, Rect, Position) -> Option<Message>,
+    pub(super) on: fn(&mut Results, &mut App, &Message, Rect),
+}
 
-#[derive(Clone, Debug)]
-pub struct Results {
+/// In the order of [`ExploreTab`].
+pub(super) static TABS: [&Tab; 6] = [
+    &imprints::TAB,
+    &statistics::TAB,
+    &histogram::TAB,
+    &map::TAB,
+    &scatter::TAB,
+    &angles::TAB,
+];
+
+pub(super) const NOTHING_TO_DRAW: &str = "there is nothing to draw";
+
+/// The horizontal descriptor of the scatter plot at first: the outline length.
+const ACROSS: usize = 7;
+
+pub(crate) struct Results {
     pub(super) findings: Arc<Findings>,
-    pub(super) tab: ExploreTab,
-    pub(super) feature: usize,
-    values: Vec<Option<f64>>,
-    x_feature: (usize, Vec<Option<f64>>),
-    /// The zooms for which the imprints of each angle were requested last, and the search for them; None until the
-    /// tab of angles was opened.
-    angles: Option<(PoseIndex, AngleSearch)>,
-    pub(in crate::tui::explore) visible_imprints: VisibleImprints,
-    pub(in crate::tui::explore) map_zoom: u8,
+    tab: usize,
+    /// The descriptor of all tabs but the map.
+    pub(super) chosen: Chosen,
+    /// The horizontal one of the scatter plot.
+    pub(super) across: Chosen,
     pub(super) list: ImprintList,
-    pub(in crate::tui::explore) pose_index: PoseIndex,
+    /// The pose at the cursor of the map.
+    pub(super) place: PoseIndex,
+    pub(super) map: MapState,
+    /// The zooms for which the imprints of each angle were asked for last, and the answer.
+    curve: Option<(PoseIndex, Option<AngleCurve>)>,
+}
+
+/// A descriptor, and its value for each imprint.
+pub(super) struct Chosen {
+    pub(super) number: usize,
+    pub(super) values: Vec<Option<f64>>,
+}
+
+impl Chosen {
+    pub(super) fn new(findings: &Findings, number: usize) -> Self {
+        let number = number.min(features().len() - 1);
+        Self {
+            number,
+            values: findings.sweep.atlas.values(number),
+        }
+    }
+
+    pub(super) fn feature(&self) -> &'static Feature {
+        &features()[self.number]
+    }
+
+    pub(super) fn value(&self, id: u32) -> Option<f64> {
+        self.values.get(wide(id)).copied().flatten()
+    }
+
+    pub(super) fn text(&self, theme: &Theme, id: u32, width: usize) -> String {
+        theme.number(self.value(id), width)
+    }
+}
+
+/// Symbol and key of a descriptor: `Ratio (side_ratio)`.
+pub(super) fn named(feature: &Feature) -> String {
+    format!("{} ({})", feature.descriptor.symbol, feature.key)
+}
+
+/// The same with what it is: `NA (na): active taxels`.
+pub(super) fn described(feature: &Feature) -> String {
+    format!("{}: {}", named(feature), feature.descriptor.name)
+}
+
+pub(super) fn choose_descriptor(
+    results: &mut Results,
+    _app: &mut App,
+    message: &Message,
+    _area: Rect,
+) {
+    if let Some(row) = moved(results.chosen.number, message) {
+        results.choose(row);
+    }
+}
+
+/// Returns the sign and the role of a row.
+pub(super) fn row_style(is_selected: bool) -> (&'static str, Role) {
+    if is_selected {
+        ("> ", Role::Focus)
+    } else {
+        ("  ", Role::Text)
+    }
+}
+
+/// Returns the last line of a tab.
+pub(super) fn foot(area: Rect) -> Rect {
+    write::row(area, usize::from(area.height.saturating_sub(1)))
+}
+
+/// Returns what is between the first and the last line of a tab.
+pub(super) fn middle(area: Rect) -> Rect {
+    Rect {
+        height: area.height.saturating_sub(2),
+        ..write::below(area, 1)
+    }
 }
 
 impl Results {
-    pub fn new(findings: Arc<Findings>) -> Self {
+    pub(crate) fn new(findings: Arc<Findings>) -> Self {
         Self {
-            tab: ExploreTab::Imprints,
-            feature: 0,
-            values: findings.sweep.atlas.values(0),
-            x_feature: (X_FEATURE, findings.sweep.atlas.values(X_FEATURE)),
-            angles: None,
-            visible_imprints: VisibleImprints::default(),
-            map_zoom: 0,
-            list: ImprintList::new(findings.by_poses.clone()),
+            tab: 0,
+            chosen: Chosen::new(&findings, 0),
+            across: Chosen::new(&findings, ACROSS),
+            list: ImprintList::new(&findings),
+            place: PoseIndex::new([0; 5]),
+            map: MapState::default(),
+            curve: None,
             findings,
-            pose_index: PoseIndex::new([0; 5]),
         }
     }
 
-    pub fn sweep(&self) -> &SweepResult {
+    pub(super) fn sweep(&self) -> &SweepResult {
         &self.findings.sweep
     }
 
-    pub fn open_tab(&mut self, tab: ExploreTab) {
-        self.tab = tab;
+    pub(super) fn tab(&self) -> &'static Tab {
+        TABS[self.tab]
     }
 
-    pub fn next_tab(&mut self, by: i8) {
-        let next = around(self.tab as usize, by, ExploreTab::ALL.len());
-        self.tab = ExploreTab::ALL[next];
+    pub(crate) fn feature(&self) -> &'static Feature {
+        self.chosen.feature()
     }
 
-    pub fn feature(&self) -> &'static Feature {
-        &features()[self.feature]
+    fn is_open(&self, tab: ExploreTab) -> bool {
+        self.tab == tab as usize
     }
 
-    pub fn values(&self) -> &[Option<f64>] {
-        &self.values
+    /// Whether the present pose is that of the map, not that of the selected imprint.
+    fn is_at_place(&self) -> bool {
+        self.is_open(ExploreTab::Map) || self.is_open(ExploreTab::Angles)
     }
 
-    pub fn next_feature(&mut self, by: i8) {
-        self.choose_feature(around(self.feature, by, features().len()));
-    }
-
-    /// The selected imprint stays selected.
-    pub fn choose_feature(&mut self, number: usize) {
-        self.feature = number.min(features().len() - 1);
-        self.values = self.sweep().atlas.values(self.feature);
-        if self.list.sort.0 == ListColumn::Value {
-            self.list.arrange(&self.findings.sweep, &self.values);
+    fn choose(&mut self, number: usize) {
+        self.chosen = Chosen::new(&self.findings, number);
+        if self.list.is_by_value() {
+            self.list.arrange(&self.findings, &self.chosen);
         }
     }
 
-    pub fn x_feature(&self) -> usize {
-        self.x_feature.0
+    pub(super) fn angles(&self) -> Option<&AngleCurve> {
+        let (zooms, curve) = self.curve.as_ref()?;
+        curve.as_ref().filter(|_| *zooms == zooms_of(self.place))
     }
 
-    pub fn x_values(&self) -> &[Option<f64>] {
-        &self.x_feature.1
-    }
-
-    pub fn next_x_feature(&mut self, by: i8) {
-        let number = around(self.x_feature.0, by, features().len());
-        self.x_feature = (number, self.sweep().atlas.values(number));
-    }
-
-    pub fn angles(&self) -> Option<&AngleSearch> {
-        let own = |(zooms, _): &&_| *zooms == zooms_of(self.pose_index);
-        Some(&self.angles.as_ref().filter(own)?.1)
-    }
-
-    /// Returns the imprints of each angle at the zooms of the map; None until a worker has found them.
-    pub fn angle_curve(&self) -> Option<&AngleCurve> {
-        match self.angles()? {
-            AngleSearch::Found(curve) => Some(curve),
-            _ => None,
+    /// Returns the zooms at which the imprints of each angle are needed, unless they were asked for before.
+    pub(super) fn missing_angles(&mut self) -> Option<PoseIndex> {
+        let zooms = zooms_of(self.place);
+        let is_known = self
+            .curve
+            .as_ref()
+            .is_some_and(|(known, _)| *known == zooms);
+        if is_known || !self.is_open(ExploreTab::Angles) {
+            return None;
         }
+        self.curve = Some((zooms, None));
+        Some(zooms)
     }
 
-    /// Returns the place at whose zooms the tab needs the imprints of each angle, if they were not requested yet.
-    /// They count as requested afterwards.
-    pub fn missing_angles(&mut self) -> Option<PoseIndex> {
-        let missing = self.tab == ExploreTab::Angles && self.angles().is_none();
-        if missing {
-            self.angles = Some((zooms_of(self.pose_index), AngleSearch::Running));
-        }
-        missing.then_some(self.pose_index)
-    }
-
-    /// Dropped if other zooms were requested meanwhile.
-    pub fn take_angles(&mut self, place: PoseIndex, curve: Option<Arc<AngleCurve>>) {
-        if let Some((zooms, search)) = &mut self.angles
-            && *zooms == zooms_of(place)
+    pub(super) fn take_angles(&mut self, zooms: PoseIndex, curve: AngleCurve) {
+        if self
+            .curve
+            .as_ref()
+            .is_some_and(|(asked, _)| *asked == zooms)
         {
-            *search = curve.map_or(AngleSearch::Failed, AngleSearch::Found);
+            self.curve = Some((zooms, Some(curve)));
         }
     }
 
-    /// Zooms the map in, or out if `by` is negative; `last` is the closest zoom.
-    pub fn zoom_map(&mut self, by: i8, last: u8) {
-        self.map_zoom = self.map_zoom.min(last).saturating_add_signed(by).min(last);
+    pub(super) fn kept_of_all(&self) -> String {
+        let [kept, all] = [self.list.rows.len(), self.sweep().atlas.len()];
+        format!("{} of {}", grouped(kept as u64), grouped(all as u64))
     }
 
-    pub fn kept_of_all(&self) -> String {
-        let count = |count: usize| grouped(count as u64);
-        let all = self.sweep().atlas.len();
-        format!("{} of {}", count(self.list.row_count()), count(all))
+    pub(super) fn is_filtered(&self) -> bool {
+        !self.list.filter.is_empty()
     }
 
-    /// `filtered` is whether the open tab follows the filter.
-    pub fn summary(&self, filtered: bool) -> String {
-        let result = self.sweep();
-        let all = result.grid.poses();
-        let poses = if result.complete() {
-            counted(result.poses, "pose")
-        } else {
-            let done = grouped(result.poses);
-            format!("a part: {done} of {}", counted(all, "pose"))
-        };
-        let what = name_of(result.grid.source());
-        let filter = self.list.filter();
-        if filtered && !filter.is_empty() {
-            let kept = self.kept_of_all();
+    pub(super) fn no_row(&self) -> String {
+        format!("no imprint fits {}", self.list.filter)
+    }
+
+    pub(super) fn summary(&self, filtered: bool) -> String {
+        let sweep = self.sweep();
+        let mut poses = counted(sweep.grid.poses(), "pose");
+        if !sweep.complete() {
+            poses = format!("a part: {} of {poses}", grouped(sweep.poses));
+        }
+        let what = name_of(sweep.grid.source());
+        if filtered && self.is_filtered() {
+            let (kept, filter) = (self.kept_of_all(), &self.list.filter);
             return format!("{what}: {poses}, {kept} distinct imprints: {filter}");
         }
-        let distinct = counted(result.atlas.len() as u64, "distinct imprint");
+        let distinct = counted(sweep.atlas.len() as u64, "distinct imprint");
         format!("{what}: {poses}, {distinct}")
     }
 
-    /// The selected imprint stays selected.
-    pub fn sort(&mut self, by: ListColumn) {
-        self.list.sort(by, &self.findings.sweep, &self.values);
+    pub(super) fn rows_from(&self, first: usize) -> impl Iterator<Item = (usize, AtlasEntry)> + '_ {
+        let rows = self.list.rows.iter().enumerate().skip(first);
+        rows.filter_map(|(index, &id)| Some((index, self.sweep().atlas.entry(id)?)))
     }
 
-    /// The selected imprint stays selected if it is kept.
-    pub fn keep(&mut self, typed: &str, filter: &AtlasFilter) {
-        self.list.keep(typed, filter, &self.findings.sweep.atlas);
+    pub(super) fn selected(&self) -> Option<AtlasEntry> {
+        let (_, entry) = self.rows_from(self.list.selected).next()?;
+        Some(entry)
     }
 
-    pub fn rows_from(&self, first: usize) -> impl Iterator<Item = (usize, AtlasEntry)> + '_ {
-        let rows = self.list.rows().enumerate().skip(first);
-        rows.filter_map(|(index, id)| Some((index, self.sweep().atlas.entry(id)?)))
-    }
-
-    pub fn go_to_imprint(&mut self, id: u32) -> Result<(), String> {
-        if self.list.find(id) {
-            return Ok(());
+    fn pose(&self) -> Option<u64> {
+        if self.is_at_place() {
+            return Some(self.sweep().grid.number(self.place));
         }
-        Err(format!(
-            "the filter hides imprint {id}: {}",
-            self.list.filter()
-        ))
+        Some(self.selected()?.first_pose)
     }
 
-    pub fn go_to_imprint_at(&mut self, pose: u64) -> Result<(), String> {
-        let id = self.id_at(pose);
-        self.go_to_imprint(id.ok_or("this pose was not swept: the sweep was stopped")?)
-    }
-
-    pub fn point(&mut self, x0: u64, y0: u64) {
-        let counts = self.sweep().grid.counts();
-        self.pose_index[Axis::X0] = x0.min(counts[Axis::X0] - 1);
-        self.pose_index[Axis::Y0] = y0.min(counts[Axis::Y0] - 1);
-    }
-
-    pub fn turn(&mut self, by: i16) {
-        let count = self.sweep().grid.counts()[Axis::Angle];
-        let now = self.pose_index[Axis::Angle];
-        // The first angle follows the last one, as the angles may go all around.
-        let forward = u64::from(by.unsigned_abs()) % count;
-        let step = if by < 0 { count - forward } else { forward };
-        self.pose_index[Axis::Angle] = (now + step) % count;
-    }
-
-    pub fn to_angle(&mut self, index: u64) {
-        self.pose_index[Axis::Angle] = index.min(self.sweep().grid.counts()[Axis::Angle] - 1);
-    }
-
-    pub fn move_along(&mut self, axis: Axis, by: i64) {
-        let last = self.sweep().grid.counts()[axis] - 1;
-        self.pose_index[axis] = self.pose_index[axis].saturating_add_signed(by).min(last);
-    }
-
-    pub fn go_to_pose(&mut self, number: u64) {
-        self.pose_index = self.sweep().grid.index(number);
-    }
-
-    /// Returns the number of the present pose: at the map's cursor on the tabs of map and angles, otherwise the
-    /// first pose of the selected imprint.
-    pub fn pose(&self) -> Option<u64> {
-        if matches!(self.tab, ExploreTab::Map | ExploreTab::Angles) {
-            return Some(self.sweep().grid.number(self.pose_index));
-        }
-        let (_, entry) = self.rows_from(self.list.selected()).next()?;
-        Some(entry.first_pose)
-    }
-
-    pub fn pose_text(&self, pose: &Pose) -> String {
-        let values = self.sweep().grid.axes().map(|axis| {
+    pub(super) fn pose_text(&self, number: u64) -> String {
+        let grid = &self.sweep().grid;
+        let pose = grid.pose(number);
+        let values = grid.axes().map(|axis| {
             let parameter = axis.parameter();
-            let text = parameter.format(pose[axis]);
-            format!("{} {text}", parameter.row().short)
+            format!("{} {}", parameter.row().short, parameter.format(pose[axis]))
         });
         values.collect::<Vec<_>>().join(", ")
     }
 
-    pub fn width_of(&self, axis: Axis) -> usize {
+    pub(super) fn width_of(&self, axis: Axis) -> usize {
         let (range, parameter) = (self.sweep().grid.ranges()[axis], axis.parameter());
         let ends = [range.value(0), range.value(1), range.last()];
         let widths = ends.map(|value| parameter.format(value).len());
@@ -248,147 +291,245 @@ impl Results {
             .fold(parameter.row().short.len(), usize::max)
     }
 
-    pub fn id_at(&self, pose: u64) -> Option<u32> {
-        let grid = &self.sweep().grid;
-        let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(pose));
-        self.id(&imprint)
+    fn select(&mut self, id: u32) -> Result<(), String> {
+        let found = self.list.find(id).then_some(());
+        found.ok_or_else(|| format!("the filter hides imprint {id}: {}", self.list.filter))
     }
 
-    pub fn id(&self, imprint: &Imprint) -> Option<u32> {
-        self.sweep().atlas.find(imprint)
+    /// Goes from the list to the map, or back.
+    fn follow(&mut self) -> Result<(), String> {
+        let pose = self.pose().ok_or(NOTHING_SELECTED)?;
+        let grid = &self.sweep().grid;
+        if !self.is_at_place() {
+            (self.place, self.tab) = (grid.index(pose), ExploreTab::Map as usize);
+            return Ok(());
+        }
+        let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(pose));
+        let id = self.sweep().atlas.find(&imprint);
+        self.select(id.ok_or("this pose was not swept: the sweep was stopped")?)?;
+        self.tab = ExploreTab::Imprints as usize;
+        Ok(())
+    }
+
+    /// Selects the imprint on the matrix, or the same imprint at another place: a shape moved by whole cells leaves an
+    /// imprint moved by as many taxels. Returns where it lies on the matrix, relative to the one in the list.
+    fn find(&mut self, app: &App) -> Result<Option<String>, String> {
+        let imprint = app.reading().imprint;
+        if let Some(id) = self.sweep().atlas.find(&imprint) {
+            return self.select(id).map(|()| None);
+        }
+        let found = self.sweep().atlas.find_shifted(&imprint);
+        let found = found.ok_or("the imprint on the matrix is not among these")?;
+        self.select(found.id)?;
+        let ways = [
+            (found.right, "column", ["to the left", "to the right"]),
+            (found.down, "row", ["up", "down"]),
+        ];
+        let ways = ways.into_iter().filter(|(by, ..)| *by != 0);
+        let ways = ways.map(|(by, noun, towards)| {
+            let count = counted(by.unsigned_abs(), noun);
+            format!("{count} {}", towards[usize::from(by > 0)])
+        });
+        let ways = ways.collect::<Vec<_>>().join(" and ");
+        Ok(Some(format!(
+            "the same imprint; on the matrix it lies {ways}"
+        )))
+    }
+
+    /// Puts the shape onto the matrix in the present pose, with just the imprint that the sweep found. The user may
+    /// have another sensor by now: taxels that it reads differently are set by hand.
+    fn put_onto_matrix(&self, app: &mut App) -> Result<(), String> {
+        let grid = &self.sweep().grid;
+        let pose = self.pose().ok_or(NOTHING_SELECTED)?;
+        let source = grid.source_at(grid.pose(pose));
+        let source = source.map_err(|error| error.to_string())?;
+        let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(pose));
+        let mut document = Document::touched(app.history.present().sensor, source);
+        document.edits = Reading::of(&document).imprint.differing(&imprint);
+        let_go(app);
+        change(app, document);
+        app.history.choose(None);
+        let id = self.sweep().atlas.find(&imprint);
+        let number = id.map_or(String::new(), |id| format!("imprint {id} "));
+        let [undo, explore] = [&action::UNDO, &action::EXPLORE].map(|action| app.key_of(action));
+        inform(
+            app,
+            format!("{number}on the matrix; {undo} takes it back, {explore} returns to Explore"),
+        );
+        Ok(())
+    }
+
+    /// Handles what only changes what is shown.
+    fn show(&mut self, app: &mut App, message: &Message) -> Result<(), String> {
+        let Message::Explore(asked) = message else {
+            (self.tab().on)(self, app, message, tab_area(app, self));
+            return Ok(());
+        };
+        match *asked {
+            ExploreMessage::Tab(tab) => self.tab = tab as usize,
+            ExploreMessage::NextTab(by) => self.tab = around(self.tab, by, TABS.len()),
+            ExploreMessage::Feature(_) if self.is_open(ExploreTab::Map) => {
+                return Err("the map shows no descriptor".to_owned());
+            }
+            ExploreMessage::Feature(by) => {
+                self.choose(around(self.chosen.number, by, features().len()));
+            }
+            ExploreMessage::Follow => return self.follow(),
+            ExploreMessage::Find => {
+                if let Some(text) = self.find(app)? {
+                    inform(app, text);
+                }
+            }
+            _ => (self.tab().on)(self, app, message, tab_area(app, self)),
+        }
+        Ok(())
     }
 }
 
+const NOTHING_SELECTED: &str = "nothing is selected here";
+
+pub(super) fn tab_area(app: &App, results: &Results) -> Rect {
+    let area = app.panes().map(|panes| panes.area(results.slot()));
+    area.map_or(Rect::default(), |area| write::below(area, 2))
+}
+
+impl Page for Results {
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        let done = match message {
+            Message::Cancel | Message::Quit => return Flow::Close,
+            Message::Accept => match self.put_onto_matrix(app) {
+                Ok(()) => return Flow::Close,
+                refused => refused,
+            },
+            Message::Compare => match self.selected() {
+                Some(entry) => {
+                    compare_with(app, &format!("imprint {}", entry.id), &entry.imprint);
+                    Ok(())
+                }
+                None => Err(NOTHING_SELECTED.to_owned()),
+            },
+            Message::Explore(ExploreMessage::Export) => {
+                return Flow::push(ExportDialog::new(self));
+            }
+            Message::Explore(ExploreMessage::Filter) => {
+                return Flow::push(FilterDialog::new(self));
+            }
+            Message::Explore(ExploreMessage::Ranges) => {
+                open_ranges(app, Some(&self.sweep().grid));
+                Ok(())
+            }
+            message => self.show(app, message),
+        };
+        if let Err(reason) = done {
+            refuse(app, reason);
+        }
+        find_angles(app, self);
+        Flow::Stay
+    }
+
+    /// Explore opens them again for the same shape.
+    fn closed(self: Box<Self>, app: &mut App) {
+        app.results = Some(self);
+    }
+
+    fn context(&self) -> Context {
+        self.tab().context
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Screen
+    }
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        _keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        for (tab, title, place) in titles(area) {
+            let role = if tab == self.tab {
+                Role::Focus
+            } else {
+                Role::Key
+            };
+            write::text(buffer, place, theme, &title, role);
+        }
+        let summary = self.summary(self.tab().filtered);
+        write::text(buffer, write::row(area, 1), theme, &summary, Role::Text);
+        (self.tab().draw)(self, theme, buffer, write::below(area, 2))
+    }
+
+    fn click(&self, area: Rect, at: Position) -> Option<Message> {
+        let mut titles = titles(area);
+        match titles.find(|(.., place)| place.contains(at)) {
+            Some((tab, ..)) => {
+                let by = i8::try_from(tab).ok()? - i8::try_from(self.tab).ok()?;
+                Some(Message::Explore(ExploreMessage::NextTab(by)))
+            }
+            None => (self.tab().click)(self, write::below(area, 2), at),
+        }
+    }
+
+    fn wheel(&self) -> Wheel {
+        self.tab().wheel
+    }
+
+    fn has_use_for(&self, message: &Message, area: Rect) -> bool {
+        let grid = &self.sweep().grid;
+        let is_map = self.is_open(ExploreTab::Map);
+        match message {
+            Message::Accept | Message::Compare | Message::Explore(ExploreMessage::Follow) => {
+                self.pose().is_some()
+            }
+            Message::Explore(ExploreMessage::Angle(_)) => grid.counts()[Axis::Angle] > 1,
+            Message::Explore(ExploreMessage::Feature(_)) => !is_map,
+            Message::Zoom(_) => is_map && map::closest(self, write::below(area, 2)) > 0,
+            _ => true,
+        }
+    }
+
+    fn cancels_itself(&self) -> bool {
+        true
+    }
+}
+
+fn titles(area: Rect) -> impl Iterator<Item = (usize, String, Rect)> {
+    let mut rest = write::row(area, 0);
+    TABS.iter().enumerate().map(move |(tab, row)| {
+        let text = format!(" {} {} ", tab + 1, row.title);
+        let end = rest.x.saturating_add(narrow(text.len()));
+        let place = write::left_of(rest, end);
+        rest = write::right_of(rest, end.saturating_add(1));
+        (tab, text, place)
+    })
+}
+
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use taxel_core::figure::{Figure, FigureKind};
-    use taxel_core::picture::Picture;
-    use taxel_core::pose::{Anchor, Axis, PoseGrid, Ranges};
+    use taxel_core::pose::{Anchor, PoseGrid, Ranges};
     use taxel_core::sensor::Sensor;
     use taxel_core::source::Source;
     use taxel_core::sweep::Sweep;
 
     use super::*;
 
-    fn results() -> Results {
-        let source = Source::Figure(Figure::default_of(FigureKind::Heptagon, &Sensor::default()));
-        of(source, ranges())
+    fn sweep(kind: FigureKind, ranges: [&str; 3]) -> SweepResult {
+        let [x0, y0, angle] = ranges.map(|text| text.parse().expect("a range"));
+        let ranges = Ranges::default()
+            .with(Axis::X0, x0)
+            .with(Axis::Y0, y0)
+            .with(Axis::Angle, angle);
+        let sensor = Sensor::default();
+        let source = Source::Figure(Figure::default_of(kind, &sensor));
+        let grid = PoseGrid::new(source, sensor, Anchor::Corner, ranges);
+        Sweep::new(&grid.expect("in range")).run()
     }
 
-    fn with_zooms() -> Results {
-        let bar = "####\n####".parse().expect("an imprint");
-        let zooms = "1:1.5:0.5".parse().expect("a range");
-        let source = Source::Picture(Picture::at_home(bar));
-        of(source, ranges().with(Axis::ZoomX, zooms))
-    }
-
-    fn ranges() -> Ranges {
-        Ranges::default()
-            .with(Axis::X0, "5:5.9:0.1".parse().expect("a range"))
-            .with(Axis::Y0, "5:5.5:0.1".parse().expect("a range"))
-            .with(Axis::Angle, "0:80:20".parse().expect("a range"))
-    }
-
-    fn of(source: Source, ranges: Ranges) -> Results {
-        let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
-        let sweep = Sweep::new(&grid.expect("in range")).run();
-        Results::new(Arc::new(Findings::new(sweep)))
-    }
-
-    #[test]
-    fn angles_of_an_earlier_zoom_do_not_replace_the_present_ones() {
-        let mut results = with_zooms();
-        results.open_tab(ExploreTab::Angles);
-        let curve = |place| Arc::new(AngleCurve::of(results.sweep(), place));
-        let first = results.pose_index;
-        let second = first.with(Axis::ZoomX, 1);
-        let (early, late) = (curve(first), curve(second));
-        assert_eq!(results.missing_angles(), Some(first));
-        // The curve belongs to all angles and positions.
-        results.move_along(Axis::X0, 1);
-        results.turn(1);
-        assert_eq!(results.missing_angles(), None, "asked for already");
-        results.move_along(Axis::X0, -1);
-        results.turn(-1);
-        results.move_along(Axis::ZoomX, 1);
-        assert!(results.missing_angles().is_some());
-        results.take_angles(second, Some(Arc::clone(&late)));
-        results.take_angles(first, Some(early));
-        assert_eq!(results.angle_curve(), Some(&*late));
-        results.turn(1);
-        assert_eq!(results.angle_curve(), Some(&*late));
-        results.turn(-1);
-        results.move_along(Axis::ZoomX, -1);
-        assert_eq!(results.missing_angles(), Some(first), "asked for again");
-    }
-
-    #[test]
-    fn a_filter_keeps_the_right_imprints() {
-        let mut results = results();
-        let all = results.list.row_count();
-        results.list.select(7);
-        let ids = |results: &Results| {
-            let rows = results.rows_from(0);
-            rows.map(|(_, entry)| entry.id).collect::<Vec<_>>()
-        };
-        let before = ids(&results);
-        let kept = before[7];
-        let typed = format!("id<={kept}");
-        results.keep(&typed, &typed.parse().expect("an expression"));
-        assert!(results.list.row_count() < all && results.list.filter() == typed);
-        assert_eq!(ids(&results)[results.list.selected()], kept);
-        assert!(results.list.keeps(kept) && !results.list.keeps(kept + 1));
-        assert!(!results.list.find(kept + 1));
-        results.keep("id<0", &"id<0".parse().expect("an expression"));
-        assert_eq!((results.list.row_count(), results.list.selected()), (0, 0));
-        assert!(results.pose().is_none());
-        results.keep("", &AtlasFilter::default());
-        assert_eq!(ids(&results), before);
-    }
-
-    #[test]
-    fn the_last_screenful_is_full_and_the_list_scrolls_only_when_needed() {
-        let mut results = results();
-        let (all, visible) = (results.list.row_count(), 10);
-        assert!(all > 25 && all % visible != 0, "{all}");
-        let mut first = |row| {
-            results.list.keep_first_row(visible);
-            results.list.select(row);
-            results.list.keep_first_row(visible);
-            results.list.first_row(visible)
-        };
-        assert_eq!([first(9), first(10), first(19)], [0, 10, 10]);
-        let last = all - visible;
-        assert_eq!([first(usize::MAX), first(last)], [last, last]);
-        assert_eq!(first(last - 1), (last - 1) / visible * visible);
-        first(usize::MAX);
-        results.keep("id<15", &"id<15".parse().expect("an expression"));
-        assert_eq!(results.list.first_row(visible), 5, "no line stays empty");
-        assert_eq!(results.list.first_row(20), 0);
-    }
-
-    #[test]
-    fn the_cursor_of_the_map_stays_on_it() {
-        let mut results = results();
-        results.open_tab(ExploreTab::Map);
-        for (axis, by, place) in [
-            (Axis::X0, -1, [0, 0, 0, 0, 0]),
-            (Axis::X0, 1, [1, 0, 0, 0, 0]),
-            (Axis::Y0, 1, [1, 1, 0, 0, 0]),
-        ] {
-            results.move_along(axis, by);
-            assert_eq!(results.pose_index.into_array(), place);
-        }
-        results.point(u64::MAX, u64::MAX);
-        results.turn(-1);
-        results.move_along(Axis::ZoomX, 1);
-        assert_eq!(results.pose_index.into_array(), [9, 5, 4, 0, 0]);
-        results.move_along(Axis::Y0, -3);
-        results.move_along(Axis::X0, i64::MIN);
-        results.turn(1);
-        assert_eq!(results.pose_index.into_array(), [0, 2, 0, 0, 0]);
-        assert_eq!(results.pose(), Some(20));
-        results.next_tab(1);
-        assert_eq!(results.tab, ExploreTab::Scatter);
+    pub(in crate::tui::explore) fn results() -> (ImprintList, Findings) {
+        let ranges = ["5:5.9:0.1", "5:5.5:0.1", "0:80:20"];
+        let findings = Findings::new(sweep(FigureKind::Heptagon, ranges));
+        (ImprintList::new(&findings), findings)
     }
 }

@@ -1,173 +1,148 @@
 //! The scatter tab: two descriptors of every imprint that the filter keeps, one against the other.
 //!
 //! ```text
-//! p: perimeter against na: active taxels; 62 imprints      the descriptors, and how many imprints have both values
-//! p                     · 1   o 2–9   O 10–99   @ 100+     how many imprints share a character
-//! 24 ┤      · oX O                                         X is the selected imprint
+//! P (p): outline length against NA (na): active taxels; 62 imprints    the descriptors, how many have both values
+//! p                     · 1   o 2–9   O 10–99   @ 100+                 how many imprints share a character
+//! 24 ┤      · oX O                                                     X is the selected imprint
 //!    └────┬────┬──── na
-//! imprint 5: na 22, p 20; 4 poses                          the selected imprint
+//! imprint 5: na 22, p 20; 4 poses                                      the selected imprint
 //! ```
 //! Up and down choose the vertical descriptor, which is the one of the other tabs too; left and right choose the
 //! horizontal one. A click selects the nearest imprint.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
-use taxel_core::atlas::{AtlasEntry, features};
-use taxel_core::index::wide;
+use taxel_core::atlas::features;
 use taxel_files::formats::value::counted;
 use taxel_files::formats::{Plot, axis_ends};
 
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
-use crate::tui::explore::imprints::no_row;
-use crate::tui::explore::message::ExploreMessage;
-use crate::tui::explore::results::Results;
-use crate::tui::explore::view::{NOTHING_TO_DRAW, ResultsTab, choose_descriptor};
+use crate::tui::app::state::App;
+use crate::tui::explore::ExploreMessage;
+use crate::tui::explore::results::{
+    Chosen, NOTHING_TO_DRAW, Results, Tab, choose_descriptor, described, foot, middle,
+};
 use crate::tui::keys::keymap::Context;
 use crate::tui::widget::plot::{PlotField, draw_no_room};
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write;
+use crate::tui::widget::write::{self, around};
 
 const VALUE: usize = 9;
 
-pub static TAB: ResultsTab = ResultsTab {
+pub(super) static TAB: Tab = Tab {
     title: "scatter",
     context: Context::Scatter,
     filtered: true,
+    wheel: Wheel::Step,
     drawing: Some(drawing),
     table: None,
-    wheel: Wheel::Step,
     draw,
     click,
-    update,
+    on,
 };
 
-fn update(results: &mut Results, message: &Message, area: Rect) {
+fn on(results: &mut Results, app: &mut App, message: &Message, area: Rect) {
     match *message {
-        Message::Explore(ExploreMessage::Columns(by)) => results.next_x_feature(by),
+        Message::Explore(ExploreMessage::Columns(by)) => {
+            let number = around(results.across.number, by, features().len());
+            results.across = Chosen::new(&results.findings, number);
+        }
         Message::Select(row) => results.list.select(row),
-        _ => choose_descriptor(results, message, area),
+        _ => choose_descriptor(results, app, message, area),
     }
 }
 
-fn point(results: &Results, entry: &AtlasEntry) -> Option<(f64, f64)> {
-    let index = wide(entry.id);
-    let [x, y] = [results.x_values(), results.values()];
-    Some(((*x.get(index)?)?, (*y.get(index)?)?))
+fn point(results: &Results, id: u32) -> Option<(f64, f64)> {
+    Some((results.across.value(id)?, results.chosen.value(id)?))
 }
 
 fn points(results: &Results) -> Vec<(usize, (f64, f64))> {
-    let rows = results.rows_from(0);
-    rows.filter_map(|(row, entry)| Some((row, point(results, &entry)?)))
+    let rows = results.list.rows.iter().enumerate();
+    rows.filter_map(|(row, &id)| Some((row, point(results, id)?)))
         .collect()
 }
 
 fn field(area: Rect, points: &[(usize, (f64, f64))]) -> Option<PlotField> {
-    let area = Rect {
-        height: area.height.saturating_sub(2),
-        ..write::below(area, 1)
-    };
     let x = axis_ends(points.iter().map(|(_, point)| point.0));
     let y = axis_ends(points.iter().map(|(_, point)| point.1));
-    PlotField::of(area, x, y)
+    PlotField::of(middle(area), x, y)
 }
 
-/// Returns the message of a click: it selects the nearest imprint, or puts it onto the matrix if it is selected
-/// already.
+/// A click selects the nearest imprint, or puts it onto the matrix if it is selected already.
 fn click(results: &Results, area: Rect, at: Position) -> Option<Message> {
     let points = points(results);
     let field = field(area, &points)?;
     let (x, y) = field.dot(field.point(at)?);
-    let far = |(_, point): &&(usize, (f64, f64))| {
-        let (other_x, other_y) = field.dot(*point);
+    let far = |&&(_, point): &&(usize, (f64, f64))| {
+        let (other_x, other_y) = field.dot(point);
         libm::hypot(other_x - x, other_y - y)
     };
     let nearest = points
         .iter()
         .min_by(|one, other| far(one).total_cmp(&far(other)));
-    nearest.map(|&(row, _)| {
-        if row == results.list.selected() {
-            Message::Accept
-        } else {
-            Message::Select(row)
-        }
+    let (row, _) = *nearest?;
+    let again = row == results.list.selected;
+    Some(if again {
+        Message::Accept
+    } else {
+        Message::Select(row)
     })
-}
-
-fn title(results: &Results, count: usize) -> String {
-    let (x, y) = (&features()[results.x_feature()], results.feature());
-    format!(
-        "{} against {}; {}",
-        y.label(),
-        x.label(),
-        counted(count as u64, "imprint")
-    )
 }
 
 /// Returns the position of the selected imprint.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     let points = points(results);
-    let title = title(results, points.len());
+    let (x, y) = (results.across.feature(), results.chosen.feature());
+    let count = counted(points.len() as u64, "imprint");
+    let title = format!("{} against {}; {count}", described(y), described(x));
     write::text(buffer, area, theme, &title, Role::Title);
     if points.is_empty() {
-        let text = if results.list.row_count() == 0 {
-            no_row(results)
+        let text = if results.list.rows.is_empty() {
+            results.no_row()
         } else {
             "no imprint has both values".to_owned()
         };
-        let pieces = [(text.as_str(), Role::Quiet)];
-        write::line(buffer, write::row(area, 1), theme, pieces);
+        write::text(buffer, write::row(area, 1), theme, &text, Role::Quiet);
         return None;
     }
-    let selected = results.rows_from(results.list.selected()).next();
-    let foot = write::below(area, area.height.saturating_sub(1));
-    if let Some((_, entry)) = selected.filter(|_| area.height > 1) {
-        let text = detail(theme, results, &entry);
-        write::text(buffer, foot, theme, &text, Role::Text);
+    let selected = results.selected();
+    if let Some(entry) = &selected {
+        let text = format!(
+            "imprint {}: {} {}, {} {}; {}",
+            entry.id,
+            x.key,
+            results.across.text(theme, entry.id, VALUE),
+            y.key,
+            results.chosen.text(theme, entry.id, VALUE),
+            counted(entry.count, "pose")
+        );
+        write::text(buffer, foot(area), theme, &text, Role::Text);
     }
     let Some(field) = field(area, &points) else {
         draw_no_room(theme, buffer, area);
         return None;
     };
-    let x_key = features()[results.x_feature()].key.as_str();
-    field.draw_axes(theme, buffer, [results.feature().key.as_str(), x_key]);
-    let style = theme.style(Role::Chosen);
+    field.draw_axes(theme, buffer, [&y.key, &x.key]);
     let all = points.iter().map(|(_, point)| *point);
-    field.draw_points(theme, buffer, all, style);
-    let (_, entry) = selected?;
-    let at = field.character(point(results, &entry)?)?;
-    if let Some(cell) = buffer.cell_mut(at) {
-        cell.set_char('X').set_style(theme.style(Role::Cursor));
-    }
+    field.draw_points(theme, buffer, all, theme.style(Role::Chosen));
+    let at = field.character(point(results, selected?.id)?)?;
+    buffer[at]
+        .set_char('X')
+        .set_style(theme.style(Role::Cursor));
     Some(at)
 }
 
-fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
-    let formatted = |values: &[Option<f64>]| {
-        let value = values.get(wide(entry.id)).copied().flatten();
-        theme.number(value, VALUE)
-    };
-    format!(
-        "imprint {}: {} {}, {} {}; {}",
-        entry.id,
-        features()[results.x_feature()].key,
-        formatted(results.x_values()),
-        results.feature().key,
-        formatted(results.values()),
-        counted(entry.count, "pose")
-    )
-}
-
 fn drawing(results: &Results) -> Result<String, String> {
-    let points: Vec<(f64, f64)> = points(results).into_iter().map(|(_, at)| at).collect();
+    let points = points(results);
     if points.is_empty() {
         return Err(NOTHING_TO_DRAW.to_owned());
     }
-    let (x, y) = (&features()[results.x_feature()], results.feature());
-    let mut plot = Plot::new(&x.label(), &y.label());
+    let [x, y] = [&results.across, &results.chosen].map(|chosen| described(chosen.feature()));
+    let mut plot = Plot::new(&x, &y);
     plot.title = results.summary(true);
-    plot.points = points;
-    let selected = results.rows_from(results.list.selected()).next();
-    plot.chosen = selected.and_then(|(_, entry)| point(results, &entry));
+    plot.points = points.into_iter().map(|(_, at)| at).collect();
+    let selected = results.selected();
+    plot.chosen = selected.and_then(|entry| point(results, entry.id));
     Ok(plot.svg())
 }

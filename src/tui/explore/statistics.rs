@@ -3,10 +3,10 @@
 //! ```text
 //! 175 distinct up to shifts, 105 up to quarter turns and mirror images too
 //! poses cut off by the sensor: 316  without imprint: 32
-//! 1 of 23              min   mean    max     sd        the number of the chosen descriptor, and columns
-//! > na                   1 22.405     29 7.3052        a row for each descriptor
+//! 1 of 23                     min   mean    max     sd     the number of the chosen descriptor, and columns
+//! > NA (na)                     1 22.405     29 7.3052     a row for each descriptor
 //! ```
-//! The columns are [`STATISTIC_COLUMNS`]. The descriptor that is chosen here is also the one of the histogram and of the list of imprints.
+//! The chosen descriptor is also that of the other tabs.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -15,26 +15,24 @@ use taxel_files::formats::value::grouped;
 
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
-use crate::tui::explore::results::Results;
-use crate::tui::explore::view::{ResultsTab, choose_descriptor};
+use crate::tui::explore::results::{Results, Tab, choose_descriptor, named, row_style};
 use crate::tui::keys::keymap::Context;
 use crate::tui::widget::rows::ListRows;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, below};
 
-pub static TAB: ResultsTab = ResultsTab {
+const NAME: usize = 24;
+
+pub(super) static TAB: Tab = Tab {
     title: "statistics",
     context: Context::Statistics,
     filtered: false,
+    wheel: Wheel::Rows,
     drawing: None,
     table: Some(table),
-    wheel: Wheel::Rows,
     draw,
-    click: |results, area, at| {
-        let row = StatisticsTable::of(area, results).rows.at(at)?;
-        Some(Message::Select(row))
-    },
-    update: choose_descriptor,
+    click: |results, area, at| Some(Message::Select(rows(area, results).at(at)?)),
+    on: choose_descriptor,
 };
 
 fn table(results: &Results, _area: Rect) -> String {
@@ -51,98 +49,51 @@ fn table(results: &Results, _area: Rect) -> String {
     text
 }
 
-#[derive(Clone, Copy, Debug)]
-pub struct StatisticsTable {
-    pub totals: Rect,
-    pub head: Rect,
-    pub rows: ListRows,
-    pub name: usize,
-    pub column: usize,
-}
-
-impl StatisticsTable {
-    pub fn of(area: Rect, results: &Results) -> Self {
-        let (name, count) = (17, STATISTIC_COLUMNS.len());
-        let room = usize::from(area.width).saturating_sub(name);
-        // Eight columns fit into 80 characters.
-        let column = (room / count).clamp(7, 10);
-        let totals = Rect {
-            height: area.height.min(2),
-            ..area
-        };
-        let table = below(area, totals.height);
-        let rows = below(table, 1);
-        Self {
-            totals,
-            head: Rect {
-                height: table.height.min(1),
-                ..table
-            },
-            rows: ListRows::around(rows, features().len(), results.feature),
-            name,
-            column,
-        }
-    }
+fn rows(area: Rect, results: &Results) -> ListRows {
+    ListRows::around(below(area, 3), features().len(), results.chosen.number)
 }
 
 /// Returns the position of the chosen descriptor.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
-    let table = StatisticsTable::of(area, results);
-    for (index, total) in totals(results).iter().enumerate() {
-        let row = write::row(table.totals, index);
-        write::text(buffer, row, theme, total, Role::Text);
+    let (sweep, classes) = (results.sweep(), &results.findings.classes);
+    let totals = [
+        format!(
+            "{} distinct up to shifts, {} up to quarter turns and mirror images too",
+            grouped(classes.up_to_shifts as u64),
+            grouped(classes.up_to_symmetry as u64)
+        ),
+        format!(
+            "poses cut off by the sensor: {}  without imprint: {}",
+            grouped(sweep.partly_off),
+            grouped(sweep.atlas.empty_poses())
+        ),
+    ];
+    for (index, total) in totals.iter().enumerate() {
+        write::text(buffer, write::row(area, index), theme, total, Role::Text);
     }
-    let (name, width) = (table.name, table.column);
-    let mut headings = format!("{:name$}", head(&table, results));
+    let rows = rows(area, results);
+    // All columns fit into 80 characters.
+    let room = usize::from(area.width).saturating_sub(NAME);
+    let width = (room / STATISTIC_COLUMNS.len()).clamp(7, 10);
+    let (number, all) = (results.chosen.number + 1, features().len());
+    let is_cut = usize::from(rows.area.height) < all;
+    let number = is_cut.then(|| format!("{number} of {all}"));
+    let mut headings = format!("{:NAME$}", number.unwrap_or_default());
     for column in STATISTIC_COLUMNS {
         let title: String = column.title.chars().take(width - 1).collect();
         headings += &format!("{title:>width$}");
     }
-    write::text(buffer, table.head, theme, &headings, Role::Title);
-    for (index, row, statistic) in table.rows.visible(results.sweep().statistics.iter()) {
-        let chosen = index == results.feature;
-        let sign = if chosen { "> " } else { "  " };
-        let key = format!("{:width$}", statistic.feature.key, width = name - 2);
-        let mut values = String::new();
-        for column in STATISTIC_COLUMNS {
+    write::text(buffer, write::row(area, 2), theme, &headings, Role::Title);
+    for (index, row, statistic) in rows.visible(sweep.statistics.iter()) {
+        let (sign, role) = row_style(index == results.chosen.number);
+        let name = format!("{:width$}", named(statistic.feature), width = NAME - 2);
+        let values = STATISTIC_COLUMNS.iter().map(|column| {
             let text = theme.number((column.value)(statistic), width - 1);
-            values += &format!("{text:>width$}");
-        }
-        let role = if chosen { Role::Focus } else { Role::Text };
-        let pieces = [
-            (sign, Role::Key),
-            (key.as_str(), role),
-            (values.as_str(), Role::Text),
-        ];
+            format!("{text:>width$}")
+        });
+        let values: String = values.collect();
+        let pieces = [(sign, Role::Key), (&*name, role), (&*values, Role::Text)];
         write::line(buffer, row, theme, pieces);
     }
-    table.rows.position(results.feature)
-}
-
-/// Returns the number of the chosen descriptor where not all of them are visible.
-fn head(table: &StatisticsTable, results: &Results) -> String {
-    let all = features().len();
-    if usize::from(table.rows.area.height) >= all {
-        return String::new();
-    }
-    format!("{} of {all} ", results.feature + 1)
-}
-
-fn totals(results: &Results) -> [String; 2] {
-    let findings = &results.findings;
-    let (result, classes) = (&findings.sweep, findings.classes);
-    let (shifts, symmetry) = (classes.up_to_shifts, classes.up_to_symmetry);
-    let many = |count: usize| grouped(count as u64);
-    [
-        format!(
-            "{} distinct up to shifts, {} up to quarter turns and mirror images too",
-            many(shifts),
-            many(symmetry)
-        ),
-        format!(
-            "poses cut off by the sensor: {}  without imprint: {}",
-            grouped(result.partly_off),
-            grouped(result.atlas.empty_poses())
-        ),
-    ]
+    rows.position(results.chosen.number)
 }

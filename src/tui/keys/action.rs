@@ -3,18 +3,14 @@
 //! [`crate::tui::keys::default_keys`] gives them keys, with a hint and a line of help for each place. Those of the
 //! place work after `:` as well.
 
-use taxel_core::pose::Axis;
-
 use crate::tui::app::message::Message::{self, Explore, Live, Recognise};
 use crate::tui::app::message::{Copied, Endpoint, Erase, Layer};
-use crate::tui::explore::message::ExploreMessage::{
-    self, Along, Angle, Columns, Feature, NextTab, Sort, Tab,
-};
-use crate::tui::explore::message::{ExploreTab, ListColumn};
+use crate::tui::explore::ExploreMessage::{self, Angle, Columns, Feature, NextTab, Tab};
+use crate::tui::explore::ExploreTab;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Context;
 use crate::tui::live::message::LiveMessage::{self, Threshold, Window};
-use crate::tui::recognise::state::RecogniseMessage::{self, NextModel};
+use crate::tui::recognise::RecogniseMessage::{self, NextModel};
 
 #[derive(Debug, PartialEq)]
 pub struct Action {
@@ -117,25 +113,14 @@ pub static NEXT_DESCRIPTOR: Action = action("next-descriptor", Explore(Feature(1
 pub static PREVIOUS_DESCRIPTOR: Action = action("previous-descriptor", Explore(Feature(-1)));
 pub static COLUMNS_RIGHT: Action = action("columns-right", Explore(Columns(1)));
 pub static COLUMNS_LEFT: Action = action("columns-left", Explore(Columns(-1)));
-pub static SORT: Action = action("sort", Explore(ExploreMessage::SortHere));
-pub static SORT_BY_POSES: Action = action("sort-by-poses", Explore(Sort(ListColumn::Poses)));
-pub static SORT_BY_FIRST_POSE: Action =
-    action("sort-by-first-pose", Explore(Sort(ListColumn::FirstPose)));
-pub static SORT_BY_VALUE: Action = action("sort-by-value", Explore(Sort(ListColumn::Value)));
-pub static SORT_BY_PIECES: Action = action("sort-by-pieces", Explore(Sort(ListColumn::Pieces)));
-pub static SORT_BY_HOLES: Action = action("sort-by-holes", Explore(Sort(ListColumn::Holes)));
+pub static SORT: Action = action("sort", Explore(ExploreMessage::Sort));
 pub static FILTER: Action = action("filter", Explore(ExploreMessage::Filter));
 pub static FIND: Action = action("find", Explore(ExploreMessage::Find));
 pub static FOLLOW: Action = action("follow", Explore(ExploreMessage::Follow));
 pub static EXPORT: Action = action("export", Explore(ExploreMessage::Export));
 pub static NEXT_ANGLE: Action = action("next-angle", Explore(Angle(1)));
 pub static PREVIOUS_ANGLE: Action = action("previous-angle", Explore(Angle(-1)));
-pub static TEN_ANGLES_ON: Action = action("ten-angles-on", Explore(Angle(10)));
-pub static TEN_ANGLES_BACK: Action = action("ten-angles-back", Explore(Angle(-10)));
-pub static NEXT_ZOOM_X: Action = action("next-zoom-x", Explore(Along(Axis::ZoomX, 1)));
-pub static PREVIOUS_ZOOM_X: Action = action("previous-zoom-x", Explore(Along(Axis::ZoomX, -1)));
-pub static NEXT_ZOOM_Y: Action = action("next-zoom-y", Explore(Along(Axis::ZoomY, 1)));
-pub static PREVIOUS_ZOOM_Y: Action = action("previous-zoom-y", Explore(Along(Axis::ZoomY, -1)));
+pub static NEXT_ZOOM: Action = action("next-zoom", Explore(ExploreMessage::Zoom));
 pub static RECOGNISE: Action = action("recognise", Recognise(RecogniseMessage::Open));
 pub static RANDOM_TOUCH: Action = action("random-touch", Recognise(RecogniseMessage::Touch));
 pub static KEEP: Action = action("keep", Recognise(RecogniseMessage::Keep));

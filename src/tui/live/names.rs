@@ -140,9 +140,9 @@ pub(super) fn name_by(app: &mut App, choice: Option<ModelChoice>) {
     (page.names.model, page.names.answer) = (None, None);
     page.names.choice.clone_from(&choice);
     let Some(choice) = choice else { return };
-    let models = app.jobs.models().models();
+    let models = app.jobs.models.clone();
     app.jobs.run(Slot::Names, move |progress| {
-        let model = models::ready(&models, choice, progress).map(Arc::new);
+        let model = models::ready(&models, choice, |_| {}, progress).map(Arc::new);
         answer(move |app| {
             if let Some(page) = update::page(app) {
                 page.names.model = Some(model);
@@ -154,7 +154,7 @@ pub(super) fn name_by(app: &mut App, choice: Option<ModelChoice>) {
 
 /// Names the imprints of the source by the next model, which may be one of the user's own.
 pub(super) fn name_by_next(app: &mut App) {
-    let models = app.jobs.models().models();
+    let models = app.jobs.models.clone();
     app.jobs.read("Listing the models", move |_| {
         let own = models.names();
         answer(move |app| {

@@ -366,7 +366,7 @@ pub fn check_source(app: &mut App, source: &NamedSource) -> Option<Effect> {
         refuse(app, READ_ONCE);
         return None;
     }
-    let (models, access) = (app.jobs.models().clone(), Arc::clone(&app.jobs.access));
+    let (models, access) = (app.jobs.models.clone(), Arc::clone(&app.jobs.access));
     let (source, settings) = (source.clone(), app.watch_settings.clone());
     app.jobs
         .read(format!("Opening {}", named.name()), move |_| {

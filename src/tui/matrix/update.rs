@@ -27,7 +27,7 @@ use crate::tui::app::message::{Copied, Endpoint, Layer, Message};
 use crate::tui::app::state::{App, Display, Followed, NarrowPane, RunState};
 use crate::tui::app::unsaved::quit;
 use crate::tui::explain::Explain;
-use crate::tui::explore::message::ExploreMessage;
+use crate::tui::explore::ExploreMessage;
 use crate::tui::explore::work::explored;
 use crate::tui::form::FormDialog;
 use crate::tui::help::Help;
@@ -65,18 +65,12 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) {
         Message::Quit => quit(app),
         Message::QuitNow => app.run_state = RunState::Quit,
         Message::Copy(what) => copy(app, what),
-        Message::Explore(asked) => {
-            let effect = explore::work::act(app, asked);
-            perform(app, effect);
-        }
+        Message::Explore(asked) => explore::work::act(app, asked),
         Message::Live(asked) => {
             let effect = live::update::act(app, &asked);
             perform(app, effect);
         }
-        Message::Recognise(asked) => {
-            let effect = recognise::update::act(app, asked);
-            perform(app, effect);
-        }
+        Message::Recognise(asked) => recognise::page::act(app, asked),
         Message::Request(request) => shapes::update::act(app, request),
         Message::Compare => compare_with_before(app),
         Message::Load => open_list(app, ListPurpose::Load),

@@ -28,13 +28,13 @@ use crate::tui::app::document::Document;
 use crate::tui::app::message::{LibraryRequest, Message, Purpose};
 use crate::tui::app::page::Page;
 use crate::tui::app::state::App;
-use crate::tui::explore::message::ExploreMessage;
+use crate::tui::explore::ExploreMessage;
 use crate::tui::explore::work::explored;
 use crate::tui::keys::action::Action;
 use crate::tui::keys::default_keys::PLACES;
 use crate::tui::keys::keymap::Context;
 use crate::tui::live::message::{LiveMessage, NamedSource};
-use crate::tui::recognise::state::RecogniseMessage;
+use crate::tui::recognise::RecogniseMessage;
 
 #[derive(Debug, Parser)]
 #[command(

@@ -1,19 +1,33 @@
 //! Recognise: names the shape on the matrix from one or several touches, and shows how far the name can be trusted.
 //!
 //! ```text
-//! trained        a model, how well it tells its shapes apart, examples, a random touch
-//! state          the set, its model, the touches, the answer
-//! view           the panel beside the matrix: shapes with bars, the nearest imprint, the pose
-//! update         what messages do; the answer follows the matrix
-//! confusion      which shapes are taken for which, with an imprint that two share
+//! page        the page beside the matrix: the set and its model, the touches, what keys do
+//! trained     a model, how well it tells its shapes apart, a random touch
+//! answer      what the model says about the touches, in words
+//! panel       how the page is drawn
+//! confusion   which shapes are taken for which, with an imprint that two share
 //! ```
 
-pub mod trained;
+mod answer;
+pub(crate) mod confusion;
+pub(crate) mod page;
+mod panel;
+pub(crate) mod trained;
 
-pub mod state;
+use taxel_files::storage::ModelChoice;
 
-pub mod view;
-
-pub mod confusion;
-
-pub mod update;
+#[derive(Clone, Debug, PartialEq)]
+pub enum RecogniseMessage {
+    Open,
+    Choose(ModelChoice),
+    /// To the model this many further on; negative goes back.
+    NextModel(i8),
+    Touch,
+    Keep,
+    Forget,
+    Poses,
+    Confusion,
+    Seed(u64),
+    /// Selects a cell of the confusion matrix: row, column.
+    SelectCell(usize, usize),
+}

@@ -1,61 +1,70 @@
 //! A trained model, with what the screen shows about it as a whole.
 
-use rand_core::SeedableRng;
-use rand_pcg::Pcg64;
+use std::sync::Arc;
 use std::time::SystemTime;
 
+use rand_core::SeedableRng;
+use rand_pcg::Pcg64;
 use taxel_core::imprint::Imprint;
 use taxel_core::pose::{Axis, DecimalRange, PoseGrid, Ranges};
 use taxel_core::recognition::{Evaluation, Model, below};
 use taxel_core::sensor::Sensor;
 use taxel_core::touch::Plane;
-use taxel_files::storage::ModelChoice;
+use taxel_files::storage::{ModelChoice, Models};
 
+use crate::tui::jobs::JobProgress;
+use crate::tui::models;
 use crate::tui::recognise::confusion::Examples;
 
 #[derive(Debug)]
-pub struct TrainedModel {
-    pub choice: ModelChoice,
-    pub model: Model,
-    /// The length and the time of the file that it was read from; None for a model that was not read from a file.
-    pub version: Option<(u64, SystemTime)>,
-    pub evaluation: Evaluation,
-    pub examples: Examples,
-    /// The number of random poses in hundredths of a cell and whole degrees that leave an imprint which the model does
-    /// not know, and the number that were tried, each counted with the weight of its shape; None if its grid is as
-    /// fine.
-    pub unknown_between: Option<(u64, u64)>,
-}
-
-impl PartialEq for TrainedModel {
-    /// Returns true if both are the same object: models are never changed.
-    fn eq(&self, other: &Self) -> bool {
-        std::ptr::eq(self, other)
-    }
+pub(crate) struct TrainedModel {
+    pub(crate) choice: ModelChoice,
+    pub(crate) model: Model,
+    /// Length and time of the file that it was read from.
+    version: Option<(u64, SystemTime)>,
+    pub(super) evaluation: Evaluation,
+    pub(super) examples: Examples,
+    /// Of random poses in hundredths of a cell and whole degrees: those whose imprint the model does not know, and all
+    /// that were tried, each counted with the weight of its shape. None if its grid is as fine.
+    pub(super) unknown_between: Option<(u64, u64)>,
 }
 
 impl TrainedModel {
-    pub fn new(choice: ModelChoice, model: Model, version: Option<(u64, SystemTime)>) -> Self {
-        Self {
+    /// Reads a model, or trains it. `known` is the one of the set so far, which stays if its file was not written since.
+    pub(super) fn prepare(
+        models: &Models,
+        choice: ModelChoice,
+        known: Option<Arc<Self>>,
+        progress: &JobProgress,
+    ) -> Result<Arc<Self>, String> {
+        let choice = models.locate(choice).map_err(|error| error.to_string())?;
+        // Before it is read: if it is written meanwhile, it is read again the next time.
+        let file = models.file(&choice).and_then(|path| path.metadata().ok());
+        let version = file.and_then(|file| Some((file.len(), file.modified().ok()?)));
+        let is_same = |known: &Arc<Self>| known.version == version && known.choice == choice;
+        if let Some(known) = known.filter(|known| version.is_some() && is_same(known)) {
+            return Ok(known);
+        }
+        let begins = |poses| progress.post(move |app| app.recognition.begin_training(poses));
+        let model = models::ready(models, choice.clone(), begins, progress)?;
+        Ok(Arc::new(Self {
             evaluation: Evaluation::of(&model),
             examples: Examples::of(&model),
             unknown_between: unknown_between(&model),
             choice,
             model,
             version,
-        }
+        }))
     }
 
-    /// Returns the name of a shape, by its index; empty if there is no such shape.
-    pub fn name(&self, shape: usize) -> &str {
+    pub(super) fn name(&self, shape: usize) -> &str {
         let shape = self.model.shapes().get(shape);
         shape.map_or("", |shape| &shape.name)
     }
 
     /// Touches with a random shape, with a probability in proportion to its weight, in a random pose of the grid.
-    /// Returns the index of the shape, the sensor and the imprint: on the user's sensor if it fits there, off the rim if
-    /// there is room; otherwise on the model's sensor.
-    pub fn random_touch(
+    /// Returns the index of the shape, the sensor and the imprint as [`onto`] does.
+    pub(super) fn random_touch(
         &self,
         sensor: Sensor,
         random: &mut Pcg64,
@@ -75,32 +84,6 @@ impl TrainedModel {
         let imprint = Plane::new(own).touch(&grid.placed(pose));
         let (sensor, imprint) = onto(&imprint, sensor, own);
         Some((shape, sensor, imprint))
-    }
-}
-
-#[cfg(test)]
-impl TrainedModel {
-    /// Creates a small model under the name of a set: a bar of 6 × 2 at every tenth of a cell and every ten degrees.
-    pub(in crate::tui) fn of_a_bar(choice: ModelChoice) -> Self {
-        use taxel_core::figure::Figure;
-        use taxel_core::pose::Anchor;
-        use taxel_core::recognition::{NamedShape, Training};
-
-        let sensor = Sensor::default();
-        let bar = Figure::rectangle(6.0, 2.0).on(&sensor).expect("in range");
-        let cell = |text: &str| text.parse().expect("a range");
-        let ranges = Ranges::default()
-            .with(Axis::X0, cell("5:5.9:0.1"))
-            .with(Axis::Y0, cell("5:5.9:0.1"))
-            .with(Axis::Angle, cell("0:170:10"));
-        let training = Training::new(
-            [NamedShape::new("bar", bar)],
-            sensor,
-            Anchor::Centre,
-            ranges,
-        );
-        let model = training.expect("a set").run().expect("not stopped");
-        Self::new(choice, model, None)
     }
 }
 
@@ -131,22 +114,16 @@ fn moved_onto(imprint: &Imprint, sensor: &Sensor) -> Option<Imprint> {
     Some(moved)
 }
 
-/// Returns the poses of a shape on the sensor of its model, in the given ranges: those of the model, or finer ones to
-/// try poses in between.
+/// Returns the poses of a shape in the given ranges: those of the model, or finer ones to try poses in between.
 fn grid_of(model: &Model, shape: usize, ranges: Ranges) -> Option<PoseGrid> {
     let source = model.shapes().get(shape)?.source.clone();
     PoseGrid::new(source, *model.sensor(), model.anchor(), ranges).ok()
 }
 
-const TRIED: u32 = 100;
-
-/// Returns the number of random poses in hundredths of a cell and whole degrees whose imprint the model does not know,
-/// and the number of all that were tried, each counted with the weight of its shape; None if its own steps are as fine.
 fn unknown_between(model: &Model) -> Option<(u64, u64)> {
     let ranges = model.ranges();
-    let axes = [(Axis::X0, 0.01), (Axis::Y0, 0.01), (Axis::Angle, 1.0)];
     let mut fine = *ranges;
-    for (axis, step) in axes {
+    for (axis, step) in [(Axis::X0, 0.01), (Axis::Y0, 0.01), (Axis::Angle, 1.0)] {
         fine[axis] = finer(&ranges[axis], step).unwrap_or(ranges[axis]);
     }
     if fine == *ranges {
@@ -156,20 +133,17 @@ fn unknown_between(model: &Model) -> Option<(u64, u64)> {
     let (mut tried, mut unknown) = (0, 0);
     let mut plane = Plane::new(*model.sensor());
     for (shape, named) in model.shapes().iter().enumerate() {
-        let weight = u64::from(named.weight);
-        let Some(grid) = grid_of(model, shape, fine) else {
-            continue;
-        };
-        for _ in 0..TRIED {
+        let grid = grid_of(model, shape, fine)?;
+        for _ in 0..100 {
             let pose = below(&mut random, grid.poses());
-            let imprint = plane.touch(&grid.placed(pose));
-            tried += weight;
-            if model.counts_of(&imprint).is_empty() {
-                unknown += weight;
+            let counts = model.counts_of(&plane.touch(&grid.placed(pose)));
+            tried += u64::from(named.weight);
+            if counts.is_empty() {
+                unknown += u64::from(named.weight);
             }
         }
     }
-    (tried > 0).then_some((unknown, tried))
+    Some((unknown, tried))
 }
 
 /// Returns a range in smaller steps, which ends just before the value after the range's last one; None if its steps
@@ -179,9 +153,8 @@ fn finer(range: &DecimalRange, step: f64) -> Option<DecimalRange> {
         return None;
     }
     let last = range.last() + range.step() - step;
-    format!("{:.2}:{last:.2}:{step}", range.value(0))
-        .parse()
-        .ok()
+    let text = format!("{:.2}:{last:.2}:{step}", range.value(0));
+    text.parse().ok()
 }
 
 #[cfg(test)]

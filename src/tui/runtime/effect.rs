@@ -3,18 +3,13 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use taxel_core::pose::{PoseGrid, PoseIndex};
 use taxel_files::formats::recording::{RecordedView, RecordingMetadata};
-use taxel_files::storage::{Existing, ModelChoice};
+use taxel_files::storage::Existing;
 
-use crate::tui::explore::message::Findings;
 use crate::tui::live::message::WatchRequest;
-use crate::tui::recognise::state::PoseSearch;
-use crate::tui::recognise::trained::TrainedModel;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
-    Work(Work),
     Frames(FrameWork),
     Terminal(TerminalEffect),
 }
@@ -24,20 +19,6 @@ pub enum TerminalEffect {
     Redraw,
     Suspend,
     Copy(String),
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub enum Work {
-    Measure(Box<PoseGrid>),
-    Sweep(u64, Box<PoseGrid>),
-    Angles(Arc<Findings>, PoseIndex),
-    Write(u64, Arc<Findings>, String, Existing),
-    Stop,
-    /// Train a model, or read it; the model of the set so far stays if its file was not written again.
-    Prepare(u64, ModelChoice, Option<Arc<TrainedModel>>),
-    StopPreparing,
-    FindPoses(u64, Box<PoseSearch>),
-    StopFindingPoses,
 }
 
 #[derive(Clone, Debug, PartialEq)]

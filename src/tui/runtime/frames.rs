@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use taxel_files::acquire::FrameSource;
 use taxel_files::formats::recording::RecordingMetadata;
@@ -20,13 +20,16 @@ use taxel_files::storage::{Existing, below_home};
 use crate::frames::WatchRequest;
 use crate::frames::recording::Recording;
 use crate::tui::app::message::WorkerEvent;
+use crate::tui::app::update::on_worker;
+use crate::tui::jobs::{Post, caught, start, wait_until_finished};
 use crate::tui::live::feed::Feed;
 use crate::tui::live::message::LiveEvent;
 use crate::tui::runtime::disk::files::WriteAccess;
-use crate::tui::runtime::work::execution::{Execution, caught, start, wait_until_finished};
 
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(crate) struct FrameWatcher {
+    /// How its thread reports that frames wait; without one, a script takes them.
+    pub(crate) post: Option<Post>,
     /// The source; None before the first one and after the page was closed.
     watched: Option<Watched>,
     /// The thread of the last source, which may still read it after it was stopped.
@@ -54,7 +57,6 @@ impl FrameWatcher {
         number: u64,
         request: Arc<WatchRequest>,
         write: Option<(PathBuf, Existing)>,
-        execution: &Execution,
     ) {
         let feed = Feed::new(request);
         self.watched = Some(Watched {
@@ -81,21 +83,22 @@ impl FrameWatcher {
             }
             source
         };
-        let Execution::OnThreads(post) = execution else {
+        let Some(post) = self.post.clone() else {
             begin();
             return;
         };
-        let (own, before, post) = (Arc::clone(&feed), self.thread.take(), Arc::clone(post));
+        let (own, before) = (Arc::clone(&feed), self.thread.take());
         let thread = start(move || {
             if let Some(before) = before {
-                wait_until_finished(&before, CLOSE_TIMEOUT);
+                wait_until_finished(&before, Instant::now() + CLOSE_TIMEOUT);
             }
             // Before the first frame, so that none is missing; not on the screen's thread, as the disk may hang.
             let source = begin();
             let mut options = own.request.options.clone();
             options.waits = true;
             let mut news = || {
-                post(WorkerEvent::Live(number, LiveEvent::Waiting));
+                let waiting = WorkerEvent::Live(number, LiveEvent::Waiting);
+                post.answer(|app| on_worker(app, waiting));
                 ControlFlow::Continue(())
             };
             if let Err(panic) = caught(|| own.run(&source, &options, &mut news)) {

@@ -1,9 +1,8 @@
 //! What the screen asks of the outside world and has not made a closure of yet: see [`crate::tui::jobs`].
 //!
 //! ```text
-//! effect      what update may ask for: long work, frames, the terminal
+//! effect      what update may ask for: frames, the terminal
 //! disk        files that are opened and written
-//! work        sweeps, models and exports, each on a thread of its own
 //! frames      a source of frames: watched, recorded
 //! ```
 
@@ -11,9 +10,7 @@ pub mod effect;
 
 pub(crate) mod disk;
 
-pub(crate) mod work;
-
-mod frames;
+pub(crate) mod frames;
 
 pub(crate) mod reminders;
 
@@ -38,23 +35,13 @@ use crate::tui::runtime::effect::{Effect, FrameWork};
 pub(crate) fn perform(app: &mut App, effect: Option<Effect>) {
     match effect {
         Some(Effect::Terminal(effect)) => app.terminal = Some(effect),
-        Some(Effect::Work(work)) => {
-            let event = app.jobs.workers.perform(work);
-            later(app, event);
-        }
         Some(Effect::Frames(work)) => frames(app, work),
         None => {}
     }
 }
 
-fn later(app: &mut App, event: Option<WorkerEvent>) {
-    if let Some(event) = event {
-        app.jobs.later(move |app| on_worker(app, event));
-    }
-}
-
 fn frames(app: &mut App, work: FrameWork) {
-    let workers = &mut app.jobs.workers;
+    let watcher = &mut app.jobs.frames;
     match work {
         FrameWork::Watch {
             number,
@@ -62,10 +49,10 @@ fn frames(app: &mut App, work: FrameWork) {
             write,
         } => {
             stop_watching(app);
-            (app.jobs.workers).watch(number, request, write);
+            app.jobs.frames.watch(number, request, write);
         }
         FrameWork::StopWatching => stop_watching(app),
-        FrameWork::Record(metadata) => match workers.frames.start_recording() {
+        FrameWork::Record(metadata) => match watcher.start_recording() {
             Ok(number) => {
                 let access = Arc::clone(&app.jobs.access);
                 app.jobs.disk("Starting a recording", move |_| {
@@ -76,12 +63,12 @@ fn frames(app: &mut App, work: FrameWork) {
             Err(refused) => refuse(app, refused),
         },
         FrameWork::StopRecording => {
-            if let Some((number, recording)) = workers.frames.end_recording() {
+            if let Some((number, recording)) = watcher.end_recording() {
                 end_recording(app, number, recording);
             }
         }
         FrameWork::WriteMetadata(view) => {
-            if let Some((number, recording)) = workers.frames.recording() {
+            if let Some((number, recording)) = watcher.recording() {
                 let what = format!("Saving the metadata of {}", recording.path().display());
                 app.jobs.disk(what, move |_| {
                     let RecordedView { rule, tare, marks } = *view;
@@ -98,7 +85,7 @@ fn frames(app: &mut App, work: FrameWork) {
 }
 
 fn stop_watching(app: &mut App) {
-    if let Some((number, recording)) = app.jobs.workers.frames.stop() {
+    if let Some((number, recording)) = app.jobs.frames.stop() {
         end_recording(app, number, recording);
     }
 }
@@ -129,7 +116,7 @@ fn recording_begun(app: &mut App, number: u64, begun: Result<(String, Arc<Record
         Err(refused) => (LiveEvent::NotRecorded(refused), None),
     };
     // The recording to end: the new one if its source was left meanwhile, or another one that was still open.
-    let over = (app.jobs.workers.frames).recording_started(number, recording);
+    let over = (app.jobs.frames).recording_started(number, recording);
     if let Some(over) = over {
         end_recording(app, number, over);
     }
@@ -150,7 +137,7 @@ pub fn end(app: &mut App) -> Vec<String> {
 /// Writes everything out because the program is about to be stopped, perhaps for ever. Everything goes on when it is
 /// continued.
 pub fn flush(app: &mut App) -> Vec<String> {
-    if let Some((number, recording)) = app.jobs.workers.frames.recording() {
+    if let Some((number, recording)) = app.jobs.frames.recording() {
         let what = format!("Saving {}", recording.path().display());
         app.jobs.disk(what, move |_| {
             let written = recording.write(FrameRecorder::flush);

@@ -49,7 +49,7 @@ impl Reminders {
         let is_new = |now: &&ModelChoice| {
             !matches!(now, ModelChoice::File(_)) && self.chosen.as_ref() != Some(*now)
         };
-        let trained = app.recognition.trained();
+        let trained = app.recognition.model();
         let now = trained.map(|trained| &trained.choice).filter(is_new);
         if let Some(now) = now {
             let name = vec![now.name().to_owned()];

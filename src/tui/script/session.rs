@@ -123,7 +123,7 @@ impl Session {
     pub fn frames(&mut self, count: usize) -> usize {
         let mut frames = 0;
         let access = Arc::clone(&self.app.jobs.access);
-        for event in self.app.jobs.workers.frames.next(count, &access) {
+        for event in self.app.jobs.frames.next(count, &access) {
             if let WorkerEvent::Live(_, LiveEvent::Arrived(batch)) = &event {
                 frames += batch.frames.len();
             }

@@ -206,7 +206,7 @@ impl EventLoop<'_> {
     /// come meanwhile are taken together.
     fn take_frames(&mut self) {
         self.frames_due = None;
-        if !self.app.jobs.workers.frames.has_new() || self.is_writing {
+        if !self.app.jobs.frames.has_new() || self.is_writing {
             return;
         }
         let now = Instant::now();
@@ -216,7 +216,7 @@ impl EventLoop<'_> {
             return;
         }
         self.frames_at = Some(now);
-        if let Some(frames) = self.app.jobs.workers.frames.take() {
+        if let Some(frames) = self.app.jobs.frames.take() {
             self.app.jobs.later(move |app| on_worker(app, frames));
             self.update(Message::Answered);
         }

@@ -130,11 +130,8 @@ fn the_program_asks_before_it_replaces_a_file() {
     export(&mut program.session, &path);
     program.until("already exists. Replace it?");
     program.press("n<Esc>");
-    // Help that covers the page gives way to the question.
     export(&mut program.session, &path);
-    program.press("<F1>");
     program.until("already exists. Replace it?");
-    shows(&program.session, &["pentagon: 600 poses"]);
     program.press("y");
     program.until("written: ");
     let text = std::fs::read_to_string(&path).expect("it is there");

@@ -11,11 +11,10 @@ use taxel_files::acquire::FrameSource;
 use taxel_files::formats::file::system_reason;
 use taxel_files::formats::recording::may_be_recording;
 use taxel_files::formats::{Content, imprint_file, read_content};
-use taxel_files::storage::{self, Existing, ModelChoice, below_home};
+use taxel_files::storage::{self, Existing, ModelChoice, Models, below_home};
 
 use crate::tui::live::message::WatchRequest;
 use crate::tui::runtime::frames;
-use crate::tui::runtime::work::models::ModelStore;
 
 /// The largest size of a file that is opened, in bytes. One byte more is read at most, and the file is refused then.
 const MOST: u64 = imprint_file::MAX_BYTES as u64;
@@ -24,15 +23,14 @@ const MOST_PATHS: usize = 500;
 
 pub(crate) fn watchable(
     mut request: Arc<WatchRequest>,
-    models: &ModelStore,
+    models: &Models,
     access: &WriteAccess,
 ) -> Result<Arc<WatchRequest>, String> {
     let source = frames::readable(&request.source, access)?;
     refuse_baud(&source, &request)?;
     refuse_imprint(&source, &request)?;
     if let Some(choice) = request.model.clone().filter(ModelChoice::is_read) {
-        let choice = models.located(choice);
-        models.file(&choice)?;
+        let choice = models.locate(choice).map_err(|error| error.to_string())?;
         Arc::make_mut(&mut request).model = Some(choice);
     }
     Ok(request)

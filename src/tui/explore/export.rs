@@ -1,0 +1,229 @@
+//! The prompts over the results: the filter of the list, and the name of a file.
+
+use std::borrow::Cow;
+
+use ratatui::layout::Rect;
+use taxel_core::atlas::{AtlasFilter, FilterError};
+use taxel_core::quote::{joined, shortened};
+use taxel_files::formats::file::has_ending;
+use taxel_files::formats::value::grouped;
+use taxel_files::storage::{Existing, atlas_path, is_poses};
+
+use crate::tui::app::change::{inform, refuse, write_file};
+use crate::tui::app::message::Message;
+use crate::tui::app::page::{Flow, LinePrompt};
+use crate::tui::app::state::App;
+use crate::tui::explore::name_of;
+use crate::tui::explore::results::{Results, TABS, tab_area};
+use crate::tui::explore::work::export;
+use crate::tui::keys::keymap::Context;
+use crate::tui::widget::text_field::TextField;
+
+const LONGEST_FILTER: usize = 200;
+
+/// The prompt for a filter. The list follows what is typed; a filter that cannot be read leaves it as it is.
+pub(crate) struct FilterDialog {
+    field: TextField,
+    before: (String, Option<u32>),
+    kept: Result<String, FilterError>,
+}
+
+impl FilterDialog {
+    pub(super) fn new(results: &Results) -> Self {
+        let filter = results.list.filter.clone();
+        let mut field = TextField::new(filter.as_str(), LONGEST_FILTER);
+        if !filter.is_empty() {
+            field.enter();
+        }
+        Self {
+            field,
+            before: (filter, results.selected().map(|entry| entry.id)),
+            kept: Ok(results.kept_of_all()),
+        }
+    }
+}
+
+impl Results {
+    fn filter(&mut self, typed: &str) -> Result<String, FilterError> {
+        let filter: AtlasFilter = typed.parse()?;
+        self.list.keep(typed, &filter, &self.findings);
+        Ok(self.kept_of_all())
+    }
+}
+
+impl LinePrompt for FilterDialog {
+    const CONTEXT: Context = Context::Filter;
+    const RESTORES: bool = true;
+
+    /// The prompt stays open until the filter can be read.
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        let Some(results) = app.top_mut::<Results>() else {
+            return Flow::Close;
+        };
+        if matches!(message, Message::Cancel | Message::Quit) {
+            let (typed, selected) = &self.before;
+            // It could be read before.
+            let _ = results.filter(typed);
+            if let Some(id) = selected {
+                results.list.find(*id);
+            }
+            return Flow::Close;
+        }
+        if *message == Message::Accept || self.field.take(message) {
+            self.kept = results.filter(self.field.text());
+        }
+        match &self.kept {
+            Ok(kept) if *message == Message::Accept => {
+                inform(app, format!("{kept} imprints"));
+                return Flow::Close;
+            }
+            Err(error) if *message == Message::Accept => refuse(app, error.to_string()),
+            _ => {}
+        }
+        Flow::Stay
+    }
+
+    fn label(&self) -> &'static str {
+        "Filter: "
+    }
+
+    fn field(&self) -> &TextField {
+        &self.field
+    }
+
+    fn behind(&self, _columns: u16) -> Cow<'_, str> {
+        match &self.kept {
+            _ if self.field.text().trim().is_empty() => {
+                "   such as na>=40 holes=0; empty shows all".into()
+            }
+            Ok(kept) => format!("   {kept}").into(),
+            Err(_) => "".into(),
+        }
+    }
+
+    fn wrong(&self) -> Option<String> {
+        self.kept.as_ref().err().map(FilterError::to_string)
+    }
+}
+
+const LONGEST_NAME: usize = 4096;
+
+/// The prompt for a file. Its ending says what is written: the table or the drawing of the open tab, all imprints, or
+/// all poses.
+pub(crate) struct ExportDialog {
+    field: TextField,
+    endings: Vec<&'static str>,
+    label: &'static str,
+    has_table: bool,
+}
+
+impl ExportDialog {
+    /// Proposes the tab's drawing or table if it has one, otherwise the table of all imprints.
+    pub(super) fn new(results: &Results) -> Self {
+        let (tab, sweep) = (results.tab(), results.sweep());
+        // A slash would separate folders.
+        let what = name_of(sweep.grid.source()).replace('/', "-");
+        let name = match (tab.drawing, tab.table) {
+            (Some(_), _) => format!("{what}-{}.svg", tab.title),
+            (_, Some(_)) => format!("{what}-{}.csv", tab.title),
+            _ => format!("{what}.csv"),
+        };
+        let mut field = TextField::new(name, LONGEST_NAME);
+        field.enter();
+        let mut endings = vec![".csv", ".jsonl", ".npz"];
+        endings.extend(sweep.complete().then_some(".npy"));
+        endings.extend(tab.drawing.map(|_| ".svg"));
+        let has_page = tab.drawing.is_some() || tab.table.is_some();
+        Self {
+            field,
+            endings,
+            // Says "all", because all imprints are written even if their list is filtered.
+            label: if has_page {
+                "Export to: "
+            } else {
+                "Export all imprints to: "
+            },
+            has_table: tab.table.is_some(),
+        }
+    }
+
+    fn name(&self) -> Result<String, String> {
+        let name = self.field.text().trim();
+        if is_poses(name) || has_ending(name, "svg") || atlas_path(name).is_ok() {
+            return Ok(name.to_owned());
+        }
+        let endings = joined(self.endings.iter().copied(), "or");
+        let expected = format!("expected a name that ends in {endings}");
+        Err(match name {
+            "" => expected,
+            name => format!("{:?}: {expected}", shortened(name)),
+        })
+    }
+}
+
+impl LinePrompt for ExportDialog {
+    const CONTEXT: Context = Context::Export;
+
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        if *message != Message::Accept {
+            self.field.take(message);
+            return Flow::Stay;
+        }
+        match self.name() {
+            Ok(name) => Flow::ask(|app| write_to(app, name)),
+            Err(reason) => {
+                refuse(app, reason);
+                Flow::Stay
+            }
+        }
+    }
+
+    fn label(&self) -> &'static str {
+        self.label
+    }
+
+    fn field(&self) -> &TextField {
+        &self.field
+    }
+
+    fn behind(&self, _columns: u16) -> Cow<'_, str> {
+        let endings = self.endings.join(" ");
+        match endings.split_once(' ').filter(|_| self.has_table) {
+            Some((table, others)) => format!("   ({table} page; {others} imprints)").into(),
+            None => format!("   ({endings})").into(),
+        }
+    }
+}
+
+fn write_to(app: &mut App, name: String) {
+    let Some(results) = app.results_below() else {
+        return;
+    };
+    let sweep = results.sweep();
+    if is_poses(&name) && !sweep.complete() {
+        let [done, all] = [sweep.poses, sweep.grid.poses()].map(grouped);
+        let text = format!(".npy needs all poses: only {done} of {all} were swept");
+        return refuse(app, text);
+    }
+    match file_of_tab(results, &name, tab_area(app, results)) {
+        Some(file) => write_file(app, name, file, Existing::Kept),
+        None => export(app, name, Existing::Kept),
+    }
+}
+
+/// Returns the drawing or the table of the open tab; None for a file that holds the results of the whole sweep.
+fn file_of_tab(results: &Results, name: &str, area: Rect) -> Option<Result<Vec<u8>, String>> {
+    let tab = results.tab();
+    if has_ending(name, "svg") {
+        let Some(drawing) = tab.drawing else {
+            let drawn = TABS.iter().filter(|tab| tab.drawing.is_some());
+            let titles = drawn.map(|tab| tab.title).collect::<Vec<_>>().join(", ");
+            return Some(Err(format!(
+                "this page has no drawing for .svg; {titles} have one"
+            )));
+        };
+        return Some(drawing(results).map(String::into_bytes));
+    }
+    let table = tab.table.filter(|_| has_ending(name, "csv"))?;
+    Some(Ok(table(results, area).into_bytes()))
+}

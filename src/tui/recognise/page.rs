@@ -1,0 +1,489 @@
+//! The page of recognition: the set and its model, the touches, and what keys do. Its state outlasts the page.
+
+use std::sync::Arc;
+
+use rand_core::SeedableRng;
+use rand_pcg::Pcg64;
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use taxel_core::imprint::Imprint;
+use taxel_core::recognition::{Answer, Evidence};
+use taxel_core::sensor::MatrixSize;
+use taxel_core::source::Source;
+use taxel_files::formats::Name;
+use taxel_files::storage::ModelChoice;
+
+use crate::tui::app::change::{begin_drawn, inform, let_go, refuse};
+use crate::tui::app::message::Message;
+use crate::tui::app::page::{Flow, Page, Slot};
+use crate::tui::app::state::{App, NarrowPane};
+use crate::tui::jobs::{self, answer};
+use crate::tui::keys::action;
+use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::matrix;
+use crate::tui::matrix::layers::Layers;
+use crate::tui::recognise::RecogniseMessage;
+use crate::tui::recognise::answer::{Found, PoseSearch};
+use crate::tui::recognise::confusion::Confusion;
+use crate::tui::recognise::trained::TrainedModel;
+use crate::tui::widget::theme::Theme;
+use crate::tui::widget::write::other;
+
+pub(crate) struct Recognition {
+    choice: ModelChoice,
+    /// The model of that set; None if it was not asked for yet, or could not be had.
+    trained: Option<Arc<TrainedModel>>,
+    /// Another set, or the same one, whose model is read or trained.
+    pub(super) preparing: Option<Preparation>,
+    /// The set that could not be read last: the next step through the sets goes on from there.
+    unreadable: Option<ModelChoice>,
+    stored: Vec<Name>,
+    pub(super) kept: Vec<Imprint>,
+    /// The touch on the matrix, and the shape that left it in its pose, if one did.
+    pub(super) present: Imprint,
+    source: Option<Source>,
+    /// The threshold at which a shape touched the matrix.
+    threshold: Option<f64>,
+    kept_source: Option<Source>,
+    present_kept: bool,
+    /// The answer about all touches.
+    pub(super) answer: Option<Answer>,
+    /// The search for the touch on the matrix, and its result.
+    search: Option<(PoseSearch, Option<Found>)>,
+    /// Whether outlines of poses are shown; None shows them if taxels are large.
+    pub(super) outlines: Option<bool>,
+    random: Pcg64,
+}
+
+pub(super) struct Preparation {
+    pub(super) choice: ModelChoice,
+    /// The number of poses of all shapes, once it is known.
+    pub(super) poses: Option<u64>,
+    pub(super) done: u64,
+    pub(super) stopping: bool,
+    /// What is carried out once the model is ready, unless the user does something else meanwhile.
+    request: Option<RecogniseMessage>,
+    /// Whether the page was opened for this set: it closes if the set cannot be read.
+    opened: bool,
+}
+
+impl Recognition {
+    /// Begins with the seven figures, without a model; random touches come from a seed.
+    pub(crate) fn new(seed: u64) -> Self {
+        Self {
+            choice: ModelChoice::Figures,
+            trained: None,
+            preparing: None,
+            unreadable: None,
+            stored: Vec::new(),
+            kept: Vec::new(),
+            present: Imprint::empty(MatrixSize::SMALLEST),
+            source: None,
+            threshold: None,
+            kept_source: None,
+            present_kept: false,
+            answer: None,
+            search: None,
+            outlines: None,
+            random: Pcg64::seed_from_u64(seed),
+        }
+    }
+
+    pub(crate) fn begin_with(&mut self, choice: ModelChoice) {
+        self.choice = choice;
+    }
+
+    pub(super) fn begin_training(&mut self, poses: u64) {
+        if let Some(preparing) = &mut self.preparing {
+            preparing.poses = Some(poses);
+        }
+    }
+
+    pub(super) fn choice(&self) -> &ModelChoice {
+        let preparing = self.preparing.as_ref();
+        preparing.map_or(&self.choice, |preparing| &preparing.choice)
+    }
+
+    /// Returns the model that answers: none while another one is prepared.
+    pub(crate) fn model(&self) -> Option<&Arc<TrainedModel>> {
+        self.trained.as_ref().filter(|_| self.preparing.is_none())
+    }
+
+    /// Returns the set `by` places after the chosen one, or after one that could not be read since.
+    fn other(&self, by: i8) -> ModelChoice {
+        let stored = self.stored.iter().cloned().map(ModelChoice::Stored);
+        let all = ModelChoice::BUILT_IN.iter().cloned().chain(stored);
+        other(all.collect(), self.choice(), self.unreadable.as_ref(), by)
+    }
+
+    /// Returns the kept touches, and the one on the matrix unless it is empty or is the last kept one.
+    pub(super) fn touches(&self) -> Vec<Imprint> {
+        let present = self.is_new_touch().then_some(self.present);
+        self.kept.iter().copied().chain(present).collect()
+    }
+
+    pub(super) fn is_new_touch(&self) -> bool {
+        !self.present_kept && !self.present.is_empty()
+    }
+
+    /// Returns the threshold at which a shape touched the matrix, if the model was trained at another one: the imprints
+    /// of the model are then not those of this sensor.
+    pub(super) fn other_threshold(&self) -> Option<f64> {
+        let trained = self.model()?.model.sensor().threshold();
+        self.threshold.filter(|&threshold| threshold != trained)
+    }
+
+    pub(super) fn found(&self) -> Option<&Found> {
+        self.search.as_ref()?.1.as_ref()
+    }
+
+    fn ask(&mut self) {
+        let touches = self.touches();
+        let model = self.model().filter(|_| !touches.is_empty());
+        self.answer = model.map(|trained| trained.model.recognise(Evidence::of(&touches)));
+    }
+
+    fn needed_search(&self) -> Option<PoseSearch> {
+        let trained = Arc::clone(self.model()?);
+        (!self.present.is_empty()).then(|| PoseSearch {
+            trained,
+            imprint: self.present,
+            named: self.answer.as_ref().and_then(|answer| answer.shape),
+        })
+    }
+}
+
+/// Follows the matrix. A page that is closed does not.
+fn show(app: &mut App) {
+    let (imprint, document) = (app.reading().imprint, app.shown());
+    let (source, threshold) = (document.source.clone(), document.sensor.threshold());
+    let page = &mut app.recognition;
+    page.threshold = source.as_ref().map(|_| threshold);
+    if imprint != page.present || source != page.source {
+        (page.present, page.source) = (imprint, source);
+        let is_last = page.kept.last() == Some(&page.present);
+        page.present_kept = is_last && page.kept_source == page.source;
+        page.ask();
+    }
+}
+
+/// Gives up the preparation of a model that has failed without an answer of its own.
+pub(crate) fn stop_if_failed(app: &mut App) {
+    if app.recognition.preparing.is_some() && !app.jobs.is_running(jobs::Slot::Model) {
+        app.recognition.preparing = None;
+    }
+}
+
+/// Brings the page up to date: called after every change.
+pub(crate) fn follow(app: &mut App) {
+    if !is_open(app) {
+        return;
+    }
+    show(app);
+    let page = &mut app.recognition;
+    let needed = page.needed_search();
+    if page.search.as_ref().map(|(search, _)| search) == needed.as_ref() {
+        return;
+    }
+    page.search = needed.clone().map(|search| (search, None));
+    let Some(search) = needed else {
+        return app.jobs.forget(jobs::Slot::Poses);
+    };
+    app.jobs.run(jobs::Slot::Poses, move |progress| {
+        let found = search.run(progress);
+        answer(move |app| {
+            if let Some(reason) = &found.refused {
+                refuse(app, reason.clone());
+            }
+            if let Some((_, result)) = &mut app.recognition.search {
+                *result = Some(found);
+            }
+        })
+    });
+}
+
+/// The page of recognition on the stack. Its state outlasts it, so the program keeps that.
+struct RecognisePage;
+
+impl Page for RecognisePage {
+    /// Unknown messages go to the matrix. During a training, Cancel and Quit first stop the training and leave the page
+    /// open; a second time they close it.
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        let preparing = app.recognition.preparing.as_mut();
+        if matches!(message, Message::Cancel | Message::Quit) {
+            let Some(preparing) = preparing.filter(|preparing| !preparing.stopping) else {
+                return Flow::Close;
+            };
+            preparing.stopping = true;
+            app.jobs.stop(jobs::Slot::Model);
+            inform(app, "stopping");
+            return Flow::Stay;
+        }
+        let is_ready = app.recognition.trained.is_some();
+        match (message, &mut app.recognition.preparing) {
+            (Message::Accept, Some(preparing)) => {
+                preparing.request = Some(RecogniseMessage::Open);
+                refuse(app, "the model is not ready yet");
+            }
+            (Message::Accept, None) if is_ready => {
+                refuse(app, "the model is ready: nothing was stopped");
+            }
+            (Message::Accept, None) => prepare(app, None, false),
+            (message, preparing) => {
+                if let Some(preparing) = preparing {
+                    preparing.request = None;
+                }
+                match message.clone() {
+                    Message::Recognise(asked) => carry_out(app, asked, true),
+                    message => matrix::update::act(app, message),
+                }
+            }
+        }
+        Flow::Stay
+    }
+
+    fn closed(self: Box<Self>, app: &mut App) {
+        close(app);
+    }
+
+    fn of_app<'a>(&self, app: &'a App) -> Option<&'a dyn Page> {
+        Some(&app.recognition)
+    }
+
+    fn context(&self) -> Context {
+        Context::Recognise
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Panel
+    }
+
+    fn draw(&self, _: &Theme, _: &Keymap, _: &mut Buffer, _: Rect) -> Option<Position> {
+        None
+    }
+}
+
+fn is_open(app: &App) -> bool {
+    app.page::<RecognisePage>().is_some()
+}
+
+/// Carries out what a key or a command asks for. A command may come while the page is closed; its result must be
+/// visible.
+pub(crate) fn act(app: &mut App, asked: RecogniseMessage) {
+    let is_open = is_open(app);
+    carry_out(app, asked, is_open);
+}
+
+fn carry_out(app: &mut App, asked: RecogniseMessage, is_open: bool) {
+    if let RecogniseMessage::Seed(seed) = asked {
+        app.recognition.random = Pcg64::seed_from_u64(seed);
+        return inform(app, format!("random touches begin with the seed {seed}"));
+    }
+    let choice = match &asked {
+        RecogniseMessage::Choose(choice) => Some(choice.clone()),
+        RecogniseMessage::NextModel(by) => Some(app.recognition.other(*by)),
+        _ => None,
+    };
+    if !is_open {
+        app.open(RecognisePage);
+        app.narrow_pane = NarrowPane::Panel;
+    }
+    if choice.is_some() || asked == RecogniseMessage::Open || !is_open {
+        prepare(app, choice, !is_open);
+    }
+    match asked {
+        RecogniseMessage::NextModel(_) => name_model(app),
+        RecogniseMessage::Keep => keep(app),
+        RecogniseMessage::Forget => forget(app),
+        RecogniseMessage::Touch | RecogniseMessage::Confusion | RecogniseMessage::Poses => {
+            match app.recognition.model().cloned() {
+                Some(trained) => with_model(app, &asked, trained),
+                None => wait_for_model(app, asked),
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Names the model, since the panel may be out of sight, and says how models of the user's own come about, as long as
+/// there are none.
+fn name_model(app: &mut App) {
+    let mut text = app.recognition.choice().to_string();
+    if app.recognition.stored.is_empty() {
+        text += "; train your own with 'taxel model train' in a shell";
+    }
+    inform(app, text);
+}
+
+/// Has the model prepared if there is none, or if it is that of another set. A training may take long: a set whose model
+/// is ready or on its way is not prepared again. But a file is read again if it was written since, when the page was
+/// `opened` just now or its set is asked for.
+fn prepare(app: &mut App, choice: Option<ModelChoice>, opened: bool) {
+    let page = &mut app.recognition;
+    let looks_again = opened || choice.is_some();
+    let choice = choice.unwrap_or_else(|| page.choice().clone());
+    let is_ready = page.trained.is_some() && !(looks_again && choice.is_read());
+    if choice == *page.choice() && (page.preparing.is_some() || is_ready) {
+        return;
+    }
+    let known = page.trained.clone().filter(|_| choice == page.choice);
+    page.preparing = Some(Preparation {
+        choice: choice.clone(),
+        poses: None,
+        done: 0,
+        stopping: false,
+        request: None,
+        opened,
+    });
+    page.ask();
+    let models = app.jobs.models.clone();
+    app.jobs.run(jobs::Slot::Model, move |progress| {
+        progress.counts(|app, progress| {
+            if let Some(preparing) = &mut app.recognition.preparing {
+                preparing.done = progress.poses;
+            }
+        });
+        let trained = TrainedModel::prepare(&models, choice, known, progress);
+        // They may have changed.
+        let stored = models.names();
+        answer(move |app| take_model(app, stored, trained))
+    });
+}
+
+/// Takes the model that was prepared. If it could not be read, the set before it stays.
+fn take_model(app: &mut App, stored: Vec<Name>, trained: Result<Arc<TrainedModel>, String>) {
+    let page = &mut app.recognition;
+    page.stored = stored;
+    let Some(Preparation {
+        choice,
+        request,
+        opened,
+        ..
+    }) = page.preparing.take()
+    else {
+        return;
+    };
+    let is_other = choice.is_read() && choice != page.choice;
+    match trained {
+        Ok(trained) => {
+            // What was given as the name of a stored model may be that of a file.
+            page.choice = trained.choice.clone();
+            (page.trained, page.unreadable) = (Some(trained), None);
+            page.ask();
+            let has_keys = app.top_mut::<RecognisePage>().is_some();
+            if let Some(request) = request.filter(|_| has_keys) {
+                // A notice that it is not ready, or is prepared first, would be wrong now.
+                inform(app, "the model is ready");
+                act(app, request);
+            }
+        }
+        Err(reason) => {
+            if is_other {
+                page.unreadable = Some(choice);
+            } else {
+                (page.choice, page.trained) = (choice, None);
+            }
+            page.ask();
+            if is_other && opened {
+                app.pages.retain(|page| !page.is::<RecognisePage>());
+                close(app);
+            }
+            refuse(app, reason);
+        }
+    }
+}
+
+fn wait_for_model(app: &mut App, asked: RecogniseMessage) {
+    match &mut app.recognition.preparing {
+        Some(preparing) if !preparing.stopping => {
+            preparing.request = Some(asked);
+            inform(app, "a model is prepared first");
+        }
+        _ => refuse(app, "the model is not prepared yet"),
+    }
+}
+
+fn with_model(app: &mut App, asked: &RecogniseMessage, trained: Arc<TrainedModel>) {
+    match asked {
+        RecogniseMessage::Touch => touch(app, &trained),
+        RecogniseMessage::Confusion => {
+            app.open(Confusion::new(trained));
+        }
+        _ => show_poses(app),
+    }
+}
+
+/// Hides the outlines of poses if they are visible, otherwise shows them. At first the size of the taxels decides, so
+/// this depends on what is visible, not on the setting.
+fn show_poses(app: &mut App) {
+    let Some(grid) = app.grid() else { return };
+    show(app);
+    let page = &mut app.recognition;
+    let seen = Layers::shown(page.outlines, &grid);
+    page.outlines = Some(!seen);
+    match page.found() {
+        _ if seen => inform(app, "without poses"),
+        _ if page.present.is_empty() => refuse(app, "no pose to show: nothing is touched"),
+        None => inform(app, "the poses are still being searched for"),
+        Some(found) if found.poses.is_empty() => {
+            let none = "no pose to show: no shape of the model leaves this imprint";
+            let reason = found.refused.clone();
+            refuse(app, reason.unwrap_or_else(|| none.to_owned()));
+        }
+        Some(_) => inform(app, "the likeliest pose; others of the 95 % faintly"),
+    }
+}
+
+/// Puts a random touch onto the matrix and tells its shape. Kept touches are forgotten: they were of another shape, and
+/// the answer is about one shape only.
+fn touch(app: &mut App, trained: &TrainedModel) {
+    let sensor = app.history.present().sensor;
+    let page = &mut app.recognition;
+    page.kept.clear();
+    page.present_kept = false;
+    let Some((shape, sensor, imprint)) = trained.random_touch(sensor, &mut page.random) else {
+        return;
+    };
+    begin_drawn(app, sensor, &imprint, "random touch");
+    let_go(app);
+    let undo = app.key_of(&action::UNDO);
+    let name = trained.name(shape);
+    inform(app, format!("a random touch of {name}; {undo} undoes it"));
+}
+
+/// Keeps the touch on the matrix. Kept touches count as touches of the same shape.
+fn keep(app: &mut App) {
+    show(app);
+    let page = &mut app.recognition;
+    if page.present.is_empty() {
+        return refuse(app, "nothing is touched");
+    }
+    if page.present_kept {
+        return refuse(app, "this touch is already kept");
+    }
+    page.kept.push(page.present);
+    page.kept_source = page.source.clone();
+    page.present_kept = true;
+    match page.kept.len() {
+        1 => inform(app, "1 touch kept; now touch the shape elsewhere"),
+        count => inform(app, format!("{count} touches kept")),
+    }
+}
+
+fn forget(app: &mut App) {
+    let page = &mut app.recognition;
+    if page.kept.is_empty() {
+        return refuse(app, "no touches are kept");
+    }
+    page.kept.clear();
+    page.present_kept = false;
+    page.ask();
+    inform(app, "the kept touches are forgotten");
+}
+
+fn close(app: &mut App) {
+    app.jobs.forget(jobs::Slot::Poses);
+    app.recognition.search.take_if(|(_, found)| found.is_none());
+    app.narrow_pane = NarrowPane::Matrix;
+    let_go(app);
+}

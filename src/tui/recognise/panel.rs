@@ -1,0 +1,301 @@
+//! The panel beside the matrix: the set, the shapes with bars, the nearest imprint, the pose, touches.
+//!
+//! ```text
+//! the model                   +--------------------------------------------+
+//! its grid, its limit         | Recognise: model figures-30                |
+//!                             | grid: 0.01 cells, 1°; 25,200,000 touches   |
+//!                             | limit: error 33.0 %, certain 38.3 %        |
+//!                             |                                            |
+//! the answer in a word        | likely: hexagon                            |
+//! every shape it may be       | hexagon  ████████████████████       71.0 % |
+//!                             | octagon  ███████                    29.0 % |
+//!                             |                                            |
+//! where a touch is not known, | nearest: hexagon, 2 taxels differ          |
+//! what is most like it        | + surplus, - missing                       |
+//! where the shape lies        | centre 7.51 ± 0.08, 7.48 ± 0.11 cells      |
+//!                             +--------------------------------------------+
+//! ```
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::number::{share, short};
+use taxel_core::pose::Axis;
+use taxel_files::formats::value::{counted, decimal, grouped, percent};
+
+use crate::tui::app::message::Message;
+use crate::tui::app::page::{Flow, Page, PoseLayer, Slot};
+use crate::tui::app::state::App;
+use crate::tui::explore::work::gauge;
+use crate::tui::keys::action;
+use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::recognise::RecogniseMessage;
+use crate::tui::recognise::answer::{details, verdict};
+use crate::tui::recognise::page::{Preparation, Recognition};
+use crate::tui::recognise::trained::TrainedModel;
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write::{self, narrow};
+
+const PERCENT: usize = 9;
+const NAME: usize = 14;
+
+/// The lines below the list of shapes that are always left free, so that the list has the same length for nearly all
+/// touches.
+const BELOW: usize = 6;
+
+impl Page for Recognition {
+    fn on(&mut self, _: &mut App, _: &Message) -> Flow {
+        Flow::Stay
+    }
+
+    fn context(&self) -> Context {
+        Context::Recognise
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Panel
+    }
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        let mut panel = Panel {
+            theme,
+            keymap,
+            buffer,
+            area,
+            line: 0,
+        };
+        let title = format!("Recognise: {}", self.choice());
+        panel.text(&title, Role::Title);
+        match (&self.preparing, self.model()) {
+            (Some(preparing), _) => panel.preparation(preparing),
+            (None, None) => {
+                let again = panel.key(&action::ACCEPT);
+                let text = if self.choice().is_read() {
+                    format!("not read; {again} reads it")
+                } else {
+                    format!("not prepared; {again} prepares it")
+                };
+                panel.text(&text, Role::Text);
+            }
+            (None, Some(trained)) => {
+                panel.model(trained);
+                if let Some(threshold) = self.other_threshold() {
+                    let [own, here] = [trained.model.sensor().threshold(), threshold].map(short);
+                    let text = format!("trained at threshold {own}; here it is {here}");
+                    panel.text(&text, Role::Text);
+                }
+                panel.gap();
+                panel.answer(self, trained);
+            }
+        }
+        None
+    }
+
+    fn compared_with(&self) -> Option<&Imprint> {
+        let nearest = self.found()?.nearest.as_ref()?;
+        (nearest.distance > 0).then_some(&nearest.imprint)
+    }
+
+    fn poses(&self) -> PoseLayer<'_> {
+        PoseLayer {
+            sources: self.found().map_or(&[], |found| &found.poses),
+            shown: self.outlines,
+        }
+    }
+
+    fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
+        match message {
+            Message::Recognise(RecogniseMessage::Keep) => self.is_new_touch(),
+            Message::Recognise(RecogniseMessage::Forget) => !self.kept.is_empty(),
+            Message::Recognise(RecogniseMessage::Touch | RecogniseMessage::Confusion) => {
+                self.preparing.is_some() || self.model().is_some()
+            }
+            _ => true,
+        }
+    }
+
+    fn leaves_matrix(&self) -> bool {
+        true
+    }
+
+    fn cancels_itself(&self) -> bool {
+        true
+    }
+}
+
+/// The panel while it is drawn: its area, and the next line.
+struct Panel<'a> {
+    theme: &'a Theme,
+    keymap: &'a Keymap,
+    buffer: &'a mut Buffer,
+    area: Rect,
+    line: usize,
+}
+
+impl Panel<'_> {
+    fn text(&mut self, text: &str, role: Role) {
+        let rest = write::below(self.area, narrow(self.line));
+        if rest.height > 0 {
+            self.line += write::wrapped(self.buffer, rest, self.theme, text, role);
+        }
+    }
+
+    fn lines_of(&self, text: &str) -> usize {
+        write::broken(&self.theme.text(text), usize::from(self.area.width)).len()
+    }
+
+    fn gap(&mut self) {
+        self.line += self.gap_lines();
+    }
+
+    /// On a low screen, a line is worth more than a gap.
+    fn gap_lines(&self) -> usize {
+        usize::from(self.area.height >= 16)
+    }
+
+    fn key(&self, action: &'static action::Action) -> String {
+        self.keymap.label(Context::Recognise, action)
+    }
+
+    fn preparation(&mut self, preparing: &Preparation) {
+        if preparing.choice.is_read() {
+            return self.text("being read", Role::Text);
+        }
+        let Some(poses) = preparing.poses else {
+            return self.text("being prepared", Role::Text);
+        };
+        let percent = u128::from(preparing.done) * 100 / u128::from(poses.max(1));
+        let text = format!("training: {}, {percent} %", counted(poses, "pose"));
+        self.text(&text, Role::Text);
+        let row = write::row(self.area, self.line);
+        gauge(self.theme, preparing.done, poses, self.buffer, row);
+        self.line += 1;
+        let text = if preparing.stopping {
+            "stopping".to_owned()
+        } else {
+            format!("{} stops", self.key(&action::CANCEL))
+        };
+        self.text(&text, Role::Quiet);
+    }
+
+    /// Writes the grid of a model, and the limit of one touch: the error that no method can go below.
+    fn model(&mut self, trained: &TrainedModel) {
+        let (ranges, evaluation) = (trained.model.ranges(), &trained.evaluation);
+        let steps = format!(
+            "grid: {} cells, {}°; {}",
+            decimal(ranges[Axis::X0].step(), 4),
+            decimal(ranges[Axis::Angle].step(), 4),
+            counted(evaluation.touches, "touch"),
+        );
+        self.text(&steps, Role::Quiet);
+        let mut limit = format!("limit: error {}", percent(evaluation.error()));
+        if let Some(certainty) = evaluation.certainty {
+            let certain = percent(share(certainty.touches, evaluation.touches));
+            limit += &format!(", certain {certain}");
+        }
+        self.text(&limit, Role::Quiet);
+        if let Some((unknown, tried)) = trained.unknown_between {
+            let text = format!(
+                "between the trained poses, {} of {} touches are unknown",
+                percent(share(unknown.into(), tried.into())),
+                grouped(tried)
+            );
+            self.text(&text, Role::Quiet);
+        }
+    }
+
+    /// Lines about the touch take precedence over the list of shapes.
+    fn answer(&mut self, page: &Recognition, trained: &TrainedModel) {
+        let mut below: Vec<(String, Role)> = Vec::new();
+        if let Some(answer) = &page.answer {
+            let verdict = verdict(answer, page.touches().len(), trained);
+            self.text(&verdict, Role::Title);
+            let found = page.found();
+            below = found.map_or(below, |found| {
+                details(&page.present, found, answer, trained)
+            });
+        } else {
+            let touch = self.key(&action::RANDOM_TOUCH);
+            let text = format!(
+                "The matrix is empty. Draw or place a shape, or press {touch} for a random touch."
+            );
+            self.text(&text, Role::Text);
+        }
+        let kept = (!page.kept.is_empty()).then(|| {
+            let touches = counted(page.kept.len() as u64, "touch");
+            format!("{touches} kept; {} forgets", self.key(&action::FORGET))
+        });
+        let texts = below.iter().map(|(text, _)| text).chain(&kept);
+        let lines: usize = texts.map(|text| self.lines_of(text)).sum();
+        let lines = lines + (1 + usize::from(kept.is_some())) * self.gap_lines();
+        let room = usize::from(self.area.height).saturating_sub(self.line + lines.max(BELOW));
+        if let Some(answer) = &page.answer {
+            self.ranking(&answer.ranking, trained, room.max(1));
+        }
+        if !below.is_empty() {
+            self.gap();
+        }
+        for (text, role) in below {
+            self.text(&text, role);
+        }
+        if let Some(kept) = kept {
+            self.gap();
+            self.text(&kept, Role::Text);
+        }
+    }
+
+    fn ranking(&mut self, ranking: &[(usize, f64)], trained: &TrainedModel, room: usize) {
+        let names = ranking.iter().map(|&(shape, _)| trained.name(shape));
+        let width = names.map(write::width).fold(0, usize::max).min(NAME);
+        // If shapes are left out, the last line shows how many.
+        let room = if ranking.len() > room {
+            (room - 1).max(1)
+        } else {
+            room
+        };
+        for &(shape, probability) in ranking.iter().take(room) {
+            self.shape(trained.name(shape), width, probability);
+        }
+        let rest = ranking.len().saturating_sub(room);
+        if rest > 0 {
+            self.text(&format!("and {rest} more"), Role::Quiet);
+        }
+    }
+
+    fn shape(&mut self, name: &str, width: usize, probability: f64) {
+        let row = write::row(self.area, self.line);
+        self.line += 1;
+        let name = write::fitted(name, width, self.theme);
+        let gap = " ".repeat(width.saturating_sub(write::width(&name)) + 1);
+        let room = usize::from(row.width).saturating_sub(width + 1 + PERCENT);
+        let full = full_columns(probability, room);
+        let [filled, _, _] = self.theme.bar();
+        let bar = filled.to_string().repeat(full) + &" ".repeat(room - full);
+        let percent = format!("{:>PERCENT$}", percent(probability));
+        let pieces = [
+            (&*name, Role::Text),
+            (&*gap, Role::Text),
+            (&*bar, Role::Chosen),
+            (&*percent, Role::Text),
+        ];
+        write::line(self.buffer, row, self.theme, pieces);
+    }
+}
+
+/// Returns the full columns of a bar; a value above 0 has at least one.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "up to the columns of a screen"
+)]
+fn full_columns(share: f64, width: usize) -> usize {
+    let full = (share * width as f64).round() as usize;
+    full.clamp(usize::from(share > 0.0).min(width), width)
+}
