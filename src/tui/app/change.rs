@@ -241,7 +241,7 @@ pub(in crate::tui) fn movable(app: &mut App) -> Option<Source> {
 
 pub(in crate::tui) fn nudge(app: &mut App, arrow: Arrow) {
     let (dx, dy) = arrow.step();
-    let length = app.step.length();
+    let length = app.step;
     shift(app, f64::from(dx) * length, f64::from(dy) * length);
 }
 
@@ -269,7 +269,7 @@ pub(in crate::tui) fn turn(app: &mut App, clockwise: f64) {
 
 pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
     let Some(source) = movable(app) else { return };
-    let by = f64::from(direction) * app.step.length();
+    let by = f64::from(direction) * app.step;
     let (Some(x), Some(y)) = (source.get(Parameter::ZoomX), source.get(Parameter::ZoomY)) else {
         let figure = app.key_of(&action::FIGURE);
         let text = format!("a figure has no zoom; {figure} changes its size");

@@ -31,9 +31,7 @@ impl Document {
             ..Self::empty(sensor)
         }
     }
-}
 
-impl Document {
     pub fn drawn(sensor: Sensor, imprint: Imprint) -> Self {
         Self {
             sensor,
@@ -58,11 +56,10 @@ impl Document {
     }
 
     pub fn to_shape(&self, name: Name, reading: &Reading) -> StoredShape {
-        let imprint = reading.imprint;
         StoredShape {
             name,
             sensor: self.sensor,
-            imprint,
+            imprint: reading.imprint,
             source: self.source.clone(),
         }
     }
@@ -70,26 +67,24 @@ impl Document {
     /// A source whose values this sensor does not allow becomes a drawing.
     #[must_use]
     pub fn on(&self, sensor: Sensor) -> Self {
-        let allowed = |source: &Source| {
-            let mut values = source
-                .parameters()
-                .iter()
-                .filter_map(|&p| Some((p, source.get(p)?)));
-            values.all(|(parameter, value)| sensor.check(parameter, value).is_ok())
+        let allowed = |source: &&Source| {
+            source.parameters().iter().all(|&parameter| {
+                let value = source.get(parameter);
+                value.is_none_or(|value| sensor.check(parameter, value).is_ok())
+            })
         };
-        match &self.source {
-            Some(source) if allowed(source) => Self {
+        match self.source.as_ref().filter(allowed) {
+            Some(source) => Self {
                 sensor,
                 source: Some(source.clone()),
                 edits: self.edits.resized(sensor.size()),
             },
-            _ => Self::drawn(sensor, Reading::of(self).imprint.resized(sensor.size())),
+            None => Self::drawn(sensor, Reading::of(self).imprint.resized(sensor.size())),
         }
     }
 }
 
-/// Everything that follows from a document. It is computed here and nowhere else, once per change: see
-/// [`ReadDocument`].
+/// Everything that follows from a document. It is computed here and nowhere else, once per change.
 #[derive(Clone, Debug)]
 pub struct Reading {
     pub imprint: Imprint,
@@ -111,17 +106,13 @@ impl Reading {
             coverages = Some(plane.coverages());
         }
         let regions = regions(&imprint);
-        let main = main_region(&regions);
-        let beyond = document
-            .source
-            .as_ref()
-            .is_some_and(|source| reaches_beyond(source, &document.sensor));
+        let source = document.source.as_ref();
         Self {
             imprint,
             coverages,
+            main: main_region(&regions),
             regions,
-            main,
-            beyond,
+            beyond: source.is_some_and(|source| reaches_beyond(source, &document.sensor)),
         }
     }
 
@@ -139,29 +130,5 @@ impl Reading {
     pub fn description(&self, chosen: Option<usize>) -> Option<Description> {
         self.region(chosen)
             .map(|(_, region)| Description::of(region))
-    }
-}
-
-/// The screen keeps readings only here.
-#[derive(Clone, Debug)]
-pub struct ReadDocument {
-    document: Document,
-    reading: Reading,
-}
-
-impl ReadDocument {
-    pub fn new(document: Document) -> Self {
-        Self {
-            reading: Reading::of(&document),
-            document,
-        }
-    }
-
-    pub fn document(&self) -> &Document {
-        &self.document
-    }
-
-    pub fn reading(&self) -> &Reading {
-        &self.reading
     }
 }

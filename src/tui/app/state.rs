@@ -11,7 +11,7 @@ use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
 use taxel_files::formats::StoredShape;
 
-use crate::tui::app::document::{Document, ReadDocument, Reading};
+use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{History, StoredName};
 use crate::tui::app::message::Message;
 use crate::tui::app::mouse::Paint;
@@ -88,31 +88,7 @@ pub enum NarrowPane {
     Panel,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NudgeStep {
-    Hundredth,
-    Tenth,
-    One,
-}
-
-impl NudgeStep {
-    pub fn length(self) -> f64 {
-        match self {
-            Self::Hundredth => 0.01,
-            Self::Tenth => 0.1,
-            Self::One => 1.0,
-        }
-    }
-
-    #[must_use]
-    pub fn other(self, direction: i8) -> Self {
-        match (self, direction > 0) {
-            (Self::Hundredth, true) | (Self::One, false) => Self::Tenth,
-            (_, true) => Self::One,
-            (_, false) => Self::Hundredth,
-        }
-    }
-}
+pub(crate) const STEPS: [f64; 3] = [0.01, 0.1, 1.0];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunState {
@@ -145,7 +121,9 @@ pub struct App {
     /// What the terminal is to do after this message.
     pub(crate) terminal: Option<TerminalEffect>,
     pub(in crate::tui) history: History,
-    shown: ReadDocument,
+    /// What the matrix shows.
+    shown: Document,
+    reading: Reading,
     /// The taxel that the cursor was put on: column, row. It may lie beyond a sensor that became smaller; so if the
     /// sensor is larger again, the cursor is back.
     pub(in crate::tui) cursor: (u8, u8),
@@ -153,7 +131,8 @@ pub struct App {
     pub(in crate::tui) display: Display,
     pub(in crate::tui) layers: Layers,
     pub(in crate::tui) narrow_pane: NarrowPane,
-    pub(in crate::tui) step: NudgeStep,
+    /// The step of moving and zooming, one of [`STEPS`].
+    pub(crate) step: f64,
     pub(crate) pages: Vec<Box<dyn Page>>,
     /// The prompt that the last message came from, until the next action: it opens again if its request is refused.
     pub(crate) prompt: Option<Box<dyn Page>>,
@@ -189,13 +168,14 @@ impl App {
             jobs: Jobs::without_library(),
             terminal: None,
             cursor: (options.sensor.columns() / 2, options.sensor.rows() / 2),
-            shown: ReadDocument::new(document.clone()),
+            reading: Reading::of(&document),
+            shown: document.clone(),
             history: History::new(document),
             followed: Followed::Cursor,
             display: Display::Imprint,
             layers: Layers::default(),
             narrow_pane: NarrowPane::Matrix,
-            step: NudgeStep::Hundredth,
+            step: STEPS[0],
             pages: Vec::new(),
             prompt: None,
             notice: None,
@@ -366,26 +346,21 @@ impl App {
 
     /// Returns the document that the matrix shows: the one that an open form would make, or the present one.
     pub fn shown(&self) -> &Document {
-        self.shown.document()
+        &self.shown
     }
 
     pub fn reading(&self) -> &Reading {
-        self.shown.reading()
+        &self.reading
     }
 
     /// Reads the document that the matrix shows, if it has changed. Called after every change, so that drawing, keys
     /// and the journal share one reading.
     pub(in crate::tui) fn read(&mut self) {
-        let document = self.on_matrix();
-        if document != self.shown.document() {
-            self.shown = ReadDocument::new(document.clone());
-        }
-    }
-
-    fn on_matrix(&self) -> &Document {
-        match find::<FormDialog>(&self.pages) {
-            Some(form) => form.shown(),
-            None => self.history.present(),
+        let form = find::<FormDialog>(&self.pages);
+        let document = form.map_or(self.history.present(), FormDialog::shown);
+        if *document != self.shown {
+            self.reading = Reading::of(document);
+            self.shown = document.clone();
         }
     }
 

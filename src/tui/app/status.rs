@@ -141,9 +141,7 @@ fn taxel(app: &App, seen: &Reading) -> String {
     let held = if app.held.is_some() { "held, " } else { "" };
     let pen = if app.pen.is_some() { "drawing" } else { "" };
     let step = app.shown().source.as_ref();
-    let step = step.map_or(String::new(), |_| {
-        format!("{held}step {}", app.step.length())
-    });
+    let step = step.map_or(String::new(), |_| format!("{held}step {}", app.step));
     let (column, row) = app.cursor();
     let wide = |side: u8| (side - 1).to_string().len();
     let (across, down) = (wide(seen.imprint.columns()), wide(seen.imprint.rows()));

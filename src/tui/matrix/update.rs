@@ -23,8 +23,8 @@ use crate::tui::app::change::{
 };
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{DocumentOrigin, History};
-use crate::tui::app::message::{Copied, Endpoint, Layer, Message};
-use crate::tui::app::state::{App, Display, Followed, NarrowPane, RunState};
+use crate::tui::app::message::{Copied, Endpoint, Layer, Message, Purpose};
+use crate::tui::app::state::{App, Display, Followed, NarrowPane, RunState, STEPS};
 use crate::tui::app::unsaved::quit;
 use crate::tui::explain::Explain;
 use crate::tui::explore::ExploreMessage;
@@ -41,8 +41,7 @@ use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::runtime::disk::files;
 use crate::tui::runtime::effect::TerminalEffect;
 use crate::tui::runtime::perform;
-use crate::tui::shapes::state::ListPurpose;
-use crate::tui::shapes::update::open_list;
+use crate::tui::shapes::list::open_list;
 use crate::tui::widget::write::around;
 use crate::tui::{explore, live, recognise, shapes};
 
@@ -71,10 +70,10 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) {
             perform(app, effect);
         }
         Message::Recognise(asked) => recognise::page::act(app, asked),
-        Message::Request(request) => shapes::update::act(app, request),
+        Message::Request(request) => shapes::library::act(app, request),
         Message::Compare => compare_with_before(app),
-        Message::Load => open_list(app, ListPurpose::Load),
-        Message::Delete => open_list(app, ListPurpose::Delete),
+        Message::Load => open_list(app, Purpose::Load),
+        Message::Delete => open_list(app, Purpose::Delete),
         Message::Picture => open_picture(app),
         Message::Figure => open_form(app, FormDialog::figure(app.history.present(), &app.forms)),
         Message::Sensor => open_form(app, FormDialog::sensor(app.history.present())),
@@ -174,7 +173,7 @@ fn open_picture(app: &mut App) {
             (picture.clone(), name.unwrap_or("imprint"))
         }
         (None, Some((name, imprint))) => (Picture::at_home(*imprint).named(name), name),
-        _ => return open_list(app, ListPurpose::Picture),
+        _ => return open_list(app, Purpose::Picture),
     };
     let form = FormDialog::picture(present, picture, name.to_owned());
     open_form(app, form);
@@ -402,12 +401,15 @@ fn change_step(app: &mut App, direction: i8) {
     if movable(app).is_none() {
         return;
     }
-    let step = app.step.other(direction);
-    if step == app.step {
-        let end = ["smallest", "largest"][usize::from(direction > 0)];
-        refuse(app, format!("{} is the {end} step", step.length()));
+    let now = STEPS.iter().position(|&step| step == app.step);
+    let next = now.and_then(|now| now.checked_add_signed(direction.into()));
+    match next.and_then(|next| STEPS.get(next)) {
+        Some(&step) => app.step = step,
+        None => {
+            let end = ["smallest", "largest"][usize::from(direction > 0)];
+            refuse(app, format!("{} is the {end} step", app.step));
+        }
     }
-    app.step = step;
 }
 
 fn point_at(app: &mut App, column: u8, row: u8) {

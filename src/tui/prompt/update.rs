@@ -16,7 +16,7 @@ use crate::tui::keys::key::Arrow;
 use crate::tui::prompt::commands::{Names, read, wants_names};
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::runtime::disk::files;
-use crate::tui::shapes::update::sentence;
+use crate::tui::shapes::library::sentence;
 use crate::tui::widget::text_field::TextField;
 use crate::tui::{live, matrix, shapes};
 
@@ -139,7 +139,7 @@ pub(crate) fn in_name(dialog: &mut NameDialog, app: &mut App, message: &Message)
         match dialog.name() {
             Ok(name) => {
                 let quits = dialog.quits;
-                return Flow::ask(move |app| shapes::update::save(app, name, quits));
+                return Flow::ask(move |app| shapes::library::save(app, name, quits));
             }
             Err(error) => refuse(app, error.to_string()),
         }

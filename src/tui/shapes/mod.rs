@@ -1,12 +1,5 @@
-//! The list of stored shapes, for Load, Delete and Picture.
-//!
-//! ```text
-//! state    entries, filter, selected row, shapes read      layout   list and preview
-//! view     impl Page for ListDialog                        update   keys, and the answers of the library
-//! ```
+//! The library on the screen: acts on it, and the list of its shapes.
 
-pub mod state;
+pub(crate) mod library;
 
-pub mod view;
-
-pub mod update;
+pub(crate) mod list;

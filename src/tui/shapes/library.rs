@@ -1,7 +1,4 @@
-//! Acts on the library, and the messages of the list of shapes.
-//!
-//! Each act is a closure that the disk's worker runs, and its answer. An answer for a page that was closed meanwhile
-//! is dropped.
+//! Acts on the library: load, save, delete, restore. Each is a closure that the disk's worker runs, and its answer.
 
 use std::io::ErrorKind;
 
@@ -15,99 +12,28 @@ use taxel_files::storage::{Expected, Library, LibraryError, LoadedShape, ShapeOr
 use crate::tui::app::change::{begin, compare_with, inform, refuse};
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{DocumentOrigin, StoredName};
-use crate::tui::app::message::{LibraryRequest, Message, Purpose};
-use crate::tui::app::page::{Flow, find_mut};
+use crate::tui::app::message::{LibraryRequest, Purpose};
 use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, Saving};
 use crate::tui::app::unsaved::quit;
 use crate::tui::form::FormDialog;
 use crate::tui::jobs::{answer, caught};
 use crate::tui::keys::action;
-use crate::tui::shapes::state::{ListDialog, ListPurpose};
-use crate::tui::widget::rows::moved;
 
 pub(crate) fn act(app: &mut App, request: LibraryRequest) {
     match request {
         LibraryRequest::Save(name) => save(app, name, false),
-        LibraryRequest::Named(Purpose::Delete, name) => ask_to_delete(app, name),
-        LibraryRequest::Named(purpose, name) => load(app, purpose, name),
+        LibraryRequest::Named(purpose, name) => named(app, purpose, name),
         LibraryRequest::Restore(name) => restore(app, name),
     }
 }
 
-/// Opens the list of shapes, empty until the library answers.
-pub(crate) fn open_list(app: &mut App, purpose: ListPurpose) {
-    app.open(ListDialog::new(purpose));
-    app.jobs.read("Listing the shapes", |library| {
-        let listed = library.list().map_err(|error| sentence(library, &error));
-        answer(|app| match listed {
-            Ok(entries) => {
-                if let Some(mut list) = app.pages.pop() {
-                    if let Some(list) = find_mut::<ListDialog>(std::slice::from_mut(&mut list)) {
-                        list.fill(entries);
-                        read_visible(list, app);
-                    }
-                    app.pages.push(list);
-                }
-            }
-            Err(reason) => {
-                app.pages.pop();
-                refuse(app, reason);
-            }
-        })
-    });
-}
-
-/// The list closes when a shape is taken.
-pub(crate) fn in_list(list: &mut ListDialog, app: &mut App, message: &Message) -> Flow {
-    match message {
-        Message::Accept => return choose(list, app),
-        other => match moved(list.selected(), other) {
-            Some(row) => list.select(row),
-            None => list.edit(other),
-        },
+/// Does with the shape of that name what it was chosen for.
+pub(crate) fn named(app: &mut App, purpose: Purpose, name: String) {
+    match purpose {
+        Purpose::Delete => ask_to_delete(app, name),
+        purpose => load(app, purpose, name),
     }
-    read_visible(list, app);
-    Flow::Stay
-}
-
-/// A library may be large, and only rows in sight need their size and preview.
-fn read_visible(list: &mut ListDialog, app: &mut App) {
-    let unread = list.ask();
-    if unread.is_empty() {
-        return;
-    }
-    app.jobs.read("Reading the shapes", |library| {
-        let read = unread.into_iter().map(|name| {
-            let loaded = library.load(&name);
-            let loaded = loaded.map_err(|error| sentence(library, &error));
-            (name, loaded)
-        });
-        let read: Vec<_> = read.collect();
-        answer(|app| {
-            if let Some(list) = app.top_mut::<ListDialog>() {
-                list.take(read);
-            }
-        })
-    });
-}
-
-/// Takes the selected shape, for the purpose of the list, which opens again if that is refused.
-fn choose(list: &ListDialog, app: &mut App) -> Flow {
-    let Some((entry, _)) = list.choice() else {
-        let text = match list.listed {
-            true => "there is no shape to choose",
-            false => "the library is being read",
-        };
-        refuse(app, text);
-        return Flow::Stay;
-    };
-    let (name, purpose) = (entry.name.clone(), list.purpose);
-    Flow::ask(move |app| match purpose {
-        ListPurpose::Delete => ask_to_delete(app, name),
-        ListPurpose::Load => load(app, Purpose::Load, name),
-        ListPurpose::Picture => load(app, Purpose::Picture, name),
-    })
 }
 
 fn load(app: &mut App, purpose: Purpose, name: String) {
