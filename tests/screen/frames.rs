@@ -1,10 +1,7 @@
 //! The bytes of the most common frames. The numbers are printed: `cargo test --test screen frames -- --nocapture`.
 
-use ratatui::Terminal;
-use ratatui::layout::Size;
-use taxel::tui::app::view::view;
-use taxel::tui::terminal::screen::Screen;
-use taxel::tui::terminal::settings::Abilities;
+use taxel::tui::app::view::draw;
+use taxel::tui::terminal::screen::{Abilities, Screen};
 
 use crate::session::session;
 
@@ -34,15 +31,12 @@ fn every_frame_fits_its_budget() {
             styles: true,
             synchronized: true,
         };
-        let Ok(mut terminal) = Terminal::new(Screen::new(Size::new(80, 24), abilities));
+        let mut screen = Screen::new((80, 24), abilities);
         let (first, then) = (session(before), session(&format!("{before}{keys}")));
         let then = (!keys.is_empty()).then_some(&then);
         let mut bytes = 0;
         for session in [Some(&first), then].into_iter().flatten() {
-            let Ok(_) = terminal.draw(|frame| {
-                view(session.app(), frame);
-            });
-            bytes = terminal.backend_mut().take_frame().len();
+            bytes = screen.frame(|buffer| draw(session.app(), buffer)).len();
         }
         println!("{name:26} {bytes:6}");
         if bytes > most {

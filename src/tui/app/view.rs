@@ -21,7 +21,6 @@
 //! A page borrows its own state, `&Theme` and `&Keymap`. What surrounds the pages reads the whole state: this file, the
 //! menu, the title, the matrix, the lines at the foot.
 
-use ratatui::Frame;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use taxel_core::imprint::Imprint;
@@ -35,14 +34,8 @@ use crate::tui::matrix::{self, panel};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, below, right_of};
 
-pub fn view(app: &App, frame: &mut Frame<'_>) {
-    if let Some(position) = draw(app, frame.buffer_mut()) {
-        frame.set_cursor_position(position);
-    }
-}
-
 /// Returns the position of the terminal's cursor; None if it is hidden.
-pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
+pub fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
     let area = buffer.area;
     let theme = app.theme();
     let Some(panes) = Panes::of(area, &app.reading().imprint, app.halves()) else {

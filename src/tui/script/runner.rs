@@ -12,8 +12,9 @@
 //! line is malformed, none is carried out. Long work is finished before the next command, so that a script always prints
 //! the same.
 
+use std::fmt::Display;
 use std::fs;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, RangeInclusive};
 use std::path::{Component, Path, PathBuf};
 use std::str::FromStr;
 
@@ -84,45 +85,27 @@ impl ScriptFailure {
     }
 }
 
-/// Why a command stops the script.
-enum Stop {
-    Fails(String),
-    /// The screen is not the one of the file with this name and content.
-    Differs(String, String),
-    Ended,
-    Closed,
-}
-
-impl From<String> for Stop {
+/// An expectation that does not hold.
+impl From<String> for ScriptFailure {
     fn from(message: String) -> Self {
-        Self::Fails(message)
+        Self::new(1, message)
     }
 }
 
-type Set = Box<dyn FnOnce(&mut Start) -> Result<(), String>>;
-type Act = Box<dyn Fn(&mut Runner<'_>) -> Result<(), Stop>>;
-
-enum Command {
-    /// How the program starts, and with what.
-    Set(Set),
-    Act(Act),
-}
-
-fn set(set: impl FnOnce(&mut Start) -> Result<(), String> + 'static) -> Set {
-    Box::new(set)
-}
+/// What a command does; a failure has no line yet.
+type Act = Box<dyn Fn(&mut Runner<'_>) -> Result<(), ScriptFailure>>;
 
 /// A command that needs the program to run.
-fn act(act: impl Fn(&mut Runner<'_>) -> Result<(), Stop> + 'static) -> Result<Command, String> {
-    Ok(Command::Act(Box::new(move |runner| {
-        match runner.session.app().ended() {
-            true => Err(Stop::Ended),
-            false => act(runner),
-        }
-    })))
+fn act(
+    act: impl Fn(&mut Runner<'_>) -> Result<(), ScriptFailure> + 'static,
+) -> Result<Act, String> {
+    Ok(Box::new(move |runner| {
+        runner.goes_on()?;
+        act(runner)
+    }))
 }
 
-fn drive(drive: impl Fn(&mut Session) + 'static) -> Result<Command, String> {
+fn drive(drive: impl Fn(&mut Session) + 'static) -> Result<Act, String> {
     act(move |runner| {
         drive(&mut runner.session);
         Ok(())
@@ -130,27 +113,12 @@ fn drive(drive: impl Fn(&mut Session) + 'static) -> Result<Command, String> {
 }
 
 /// A command that fails with the message that `look` returns.
-fn expect(look: impl Fn(&Session) -> Option<String> + 'static) -> Result<Command, String> {
-    act(move |runner| look(&runner.session).map_or(Ok(()), |message| Err(Stop::Fails(message))))
+fn expect(look: impl Fn(&Session) -> Option<String> + 'static) -> Result<Act, String> {
+    act(move |runner| look(&runner.session).map_or(Ok(()), |message| Err(message.into())))
 }
 
-/// The commands; each reads its argument.
-const COMMANDS: [(&str, fn(&str) -> Result<Command, String>); 22] = [
-    ("Size", |text| {
-        let size = stated_size(text)?;
-        Ok(Command::Set(set(move |start| {
-            start.options.size = size;
-            Ok(())
-        })))
-    }),
-    ("Seed", |text| {
-        let seed = whole(text, 0, u64::MAX)?;
-        Ok(Command::Set(set(move |start| {
-            start.options.options.seed = seed;
-            Ok(())
-        })))
-    }),
-    ("Set", |text| setting(text).map(Command::Set)),
+/// The commands that need the program to run; each reads its argument.
+const COMMANDS: [(&str, fn(&str) -> Result<Act, String>); 19] = [
     ("Resize", |text| {
         let (columns, rows) = stated_size(text)?;
         drive(move |session| session.resize(columns, rows))
@@ -183,13 +151,10 @@ const COMMANDS: [(&str, fn(&str) -> Result<Command, String>); 22] = [
     ("Drag", |text| {
         let positions: Result<Vec<_>, _> = text.split_whitespace().map(position).collect();
         let positions = positions?;
-        if positions.len() < 2 {
-            let found = shortened(text);
-            return Err(format!(
-                "expected two or more positions like 12,5, found {found:?}"
-            ));
+        match positions.len() {
+            0 | 1 => Err(expected("two or more positions like 12,5", text)),
+            _ => drive(move |session| drag(session, &positions)),
         }
-        drive(move |session| drag(session, &positions))
     }),
     ("Scroll", |text| {
         let (at, turns) = two(text, "a number")?;
@@ -247,20 +212,25 @@ const COMMANDS: [(&str, fn(&str) -> Result<Command, String>); 22] = [
     }),
     ("ExpectStyle", |text| {
         let (at, name) = two(text, "a style")?;
-        let ((column, row), expected) = (position(at)?, style(name)?);
+        let (column, row) = position(at)?;
+        let style = STYLES.iter().find(|(style, _)| *style == name);
+        let unknown = || {
+            format!(
+                "style {}",
+                unknown_name(name, &STYLES.map(|(name, _)| name))
+            )
+        };
+        let (expected, letter) = *style.ok_or_else(unknown)?;
         expect(move |session| {
             let index = character_at(line_of(&session.screen(), row), column);
             let found = line_of(&session.styles(), row).chars().nth(index);
-            let found = found.map(|letter| STYLES.iter().find(|(_, own)| *own == letter));
-            match found.map(|style| style.map_or("unknown", |(name, _)| name)) {
-                Some(found) if found == expected => None,
-                Some(found) => Some(format!(
-                    "at {column},{row} the style is {found}, expected {expected}"
-                )),
-                None => Some(format!(
-                    "{column},{row} is not on the screen, expected {expected}"
-                )),
-            }
+            let style = STYLES.iter().find(|(_, own)| Some(*own) == found);
+            (found != Some(letter)).then(|| match style {
+                Some((found, _)) => {
+                    format!("at {column},{row} the style is {found}, expected {expected}")
+                }
+                None => format!("{column},{row} is not on the screen, expected {expected}"),
+            })
         })
     }),
     ("ExpectScreen", |name| {
@@ -278,11 +248,11 @@ const COMMANDS: [(&str, fn(&str) -> Result<Command, String>); 22] = [
             if found == count {
                 return Ok(());
             }
-            let expected = counted(count as u64, "frame");
-            let why = runner.session.end_of_frames();
-            Err(Stop::Fails(format!(
-                "expected {expected}, found {found}: {why}"
-            )))
+            let (expected, why) = (
+                counted(count as u64, "frame"),
+                runner.session.end_of_frames(),
+            );
+            Err(format!("expected {expected}, found {found}: {why}").into())
         })
     }),
     ("Signal", |name| match name {
@@ -294,16 +264,14 @@ const COMMANDS: [(&str, fn(&str) -> Result<Command, String>); 22] = [
     // All work is finished already.
     ("Wait", |text| {
         alone("Wait", text)?;
-        Ok(Command::Act(Box::new(|_| Ok(()))))
+        Ok(Box::new(|_| Ok(())))
     }),
     ("Quit", |text| {
         alone("Quit", text)?;
-        Ok(Command::Act(Box::new(|runner| {
-            match runner.session.app().ended() {
-                true => Ok(()),
-                false => Err(Stop::Fails("the program has not ended".to_owned())),
-            }
-        })))
+        Ok(Box::new(|runner| match runner.session.app().ended() {
+            true => Ok(()),
+            false => Err("the program has not ended".to_owned().into()),
+        }))
     }),
 ];
 
@@ -316,100 +284,85 @@ const STYLES: [(&str, char); 4] = [
 
 const SIGNALS: [&str; 5] = ["HUP", "INT", "QUIT", "TERM", "TSTP"];
 
-const SETTINGS: [(&str, fn(&str) -> Result<Set, String>); 6] = [
-    ("ascii", |value| {
-        let ascii = chosen("ascii", value, &[("on", true), ("off", false)])?;
-        Ok(set(move |start| {
-            start.options.options.theme.ascii = ascii;
-            Ok(())
-        }))
-    }),
-    ("color", |value| {
-        let depth = chosen("color", value, &ColorDepth::NAMES)?;
-        Ok(set(move |start| {
-            start.options.options.theme.depth = depth;
-            Ok(())
-        }))
-    }),
-    ("theme", |value| {
-        let palette = chosen("theme", value, &Palette::NAMES)?;
-        Ok(set(move |start| {
-            start.options.options.theme.palette = palette;
-            Ok(())
-        }))
-    }),
-    ("library", |value| {
-        let folder = quoted(value).map_err(|_| {
-            let found = shortened(value);
-            format!("expected a folder in double quotes, found {found}")
-        })?;
-        Ok(set(move |start| {
-            if start.options.is_confined {
-                return Err("Set library needs --allow-outside; without that line, the script has its own library"
-                    .to_owned());
-            }
-            let folder = below_home(&folder).ok_or("no home folder, so ~ cannot be used")?;
-            start.library = Some(Library::open(folder));
-            Ok(())
-        }))
-    }),
-    ("shape", |value| {
-        let shape = shape("shape", value)?;
-        Ok(set(|start| {
-            start
-                .shapes
-                .retain(|own| !own.name.same(shape.name.as_str()));
-            start.shapes.push(shape);
-            Ok(())
-        }))
-    }),
-    // Unsaved work of a program that crashed.
-    ("leftover", |value| {
-        let shape = shape("leftover", value)?;
-        Ok(set(|start| {
-            start.leftovers.push(shape);
-            Ok(())
-        }))
-    }),
-];
-
-fn setting(text: &str) -> Result<Set, String> {
-    let (name, value) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
-    let value = value.trim();
-    if let Some((_, read)) = SETTINGS.iter().find(|(own, _)| *own == name) {
-        return read(value);
-    }
-    let parameter = Parameter::from_flag(name).filter(|own| SENSOR_PARAMETERS.contains(own));
-    let Some(parameter) = parameter else {
-        let settings = SETTINGS.iter().map(|(name, _)| (*name).to_owned());
-        let sensor = SENSOR_PARAMETERS.iter().map(|parameter| parameter.flag());
-        let names: Vec<String> = settings.chain(sensor).collect();
-        return Err(format!(
-            "{:?} cannot be set, expected one of {}{}",
-            shortened(name),
-            names.join(", "),
-            did_you_mean(name, names.iter().map(String::as_str))
-        ));
-    };
-    let value = Sensor::LARGEST.read(parameter, value);
-    let value = value.map_err(|error| error.to_string())?;
-    Ok(set(move |start| {
-        let options = &mut start.options.options;
-        let sensor = options.sensor.with(parameter, value);
-        options.sensor = sensor.map_err(|error| error.to_string())?;
-        Ok(())
-    }))
-}
-
+/// How the program starts, and with what: read from the lines before the first command.
 struct Start {
-    /// Changed by the script's settings.
     options: ScriptOptions,
     library: Option<Library>,
     shapes: Vec<StoredShape>,
     leftovers: Vec<StoredShape>,
 }
 
+const BEFORE: [&str; 3] = ["Size", "Seed", "Set"];
+
+const NAMES: [&str; 10] = [
+    "ascii",
+    "color",
+    "theme",
+    "columns",
+    "rows",
+    "threshold",
+    "pitch",
+    "library",
+    "shape",
+    "leftover",
+];
+
 impl Start {
+    fn read(&mut self, word: &str, rest: &str) -> Result<(), String> {
+        match word {
+            "Size" => self.options.size = stated_size(rest)?,
+            "Seed" => self.options.options.seed = whole(rest, 0, u64::MAX)?,
+            _ => {
+                let (name, value) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+                self.set(name, value.trim())?;
+            }
+        }
+        Ok(())
+    }
+
+    fn set(&mut self, name: &str, value: &str) -> Result<(), String> {
+        let Options { sensor, theme, .. } = &mut self.options.options;
+        let parameter = Parameter::from_flag(name).filter(|own| SENSOR_PARAMETERS.contains(own));
+        let shape = || {
+            let shape = StoredShape::read(value.as_bytes());
+            shape.map_err(|error| format!("Set {name}: {error}"))
+        };
+        match name {
+            "ascii" => theme.ascii = chosen(name, value, &[("on", true), ("off", false)])?,
+            "color" => theme.depth = chosen(name, value, &ColorDepth::NAMES)?,
+            "theme" => theme.palette = chosen(name, value, &Palette::NAMES)?,
+            "library" if self.options.is_confined => {
+                let text = "Set library needs --allow-outside; without that line, the script has its own library";
+                return Err(text.to_owned());
+            }
+            "library" => {
+                let folder = quoted(value)?;
+                let folder = below_home(&folder).ok_or("no home folder, so ~ cannot be used")?;
+                self.library = Some(Library::open(folder));
+            }
+            "shape" => {
+                let shape = shape()?;
+                let same = |own: &StoredShape| own.name.same(shape.name.as_str());
+                self.shapes.retain(|own| !same(own));
+                self.shapes.push(shape);
+            }
+            // Unsaved work of a program that crashed.
+            "leftover" => self.leftovers.push(shape()?),
+            name => {
+                let parameter = parameter.ok_or_else(|| {
+                    let all = NAMES.join(", ");
+                    let meant = did_you_mean(name, NAMES);
+                    let name = shortened(name);
+                    format!("{name:?} cannot be set, expected one of {all}{meant}")
+                })?;
+                let value = Sensor::LARGEST.read(parameter, value);
+                let set = value.and_then(|value| sensor.with(parameter, value));
+                *sensor = set.map_err(|error| error.to_string())?;
+            }
+        }
+        Ok(())
+    }
+
     /// Returns the world for the script: `own`, unless the script sets a library or its shapes.
     fn world(&self, own: World) -> Result<World, String> {
         let has_shapes = !self.shapes.is_empty() || !self.leftovers.is_empty();
@@ -449,19 +402,31 @@ pub fn run(
         shapes: Vec::new(),
         leftovers: Vec::new(),
     };
-    let (mut acts, mut last_set) = (Vec::new(), 1);
-    for (line, command) in read(script)? {
-        match command {
-            Command::Act(act) => acts.push((line, act)),
-            Command::Set(set) if acts.is_empty() => {
-                set(&mut start).map_err(|message| ScriptFailure::malformed(line, &message))?;
-                last_set = line;
-            }
-            Command::Set(_) => {
-                let message = "Size, Seed and Set must come before any command that needs a screen";
-                return Err(ScriptFailure::malformed(line, message));
-            }
+    let (mut acts, mut last_set) = (Vec::<(usize, Act)>::new(), 1);
+    for (number, line) in (1..).zip(script.lines()) {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
         }
+        let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        let command = COMMANDS.iter().find(|(name, _)| *name == word);
+        let read = match command {
+            Some((_, read)) => read(rest.trim()).map(|act| acts.push((number, act))),
+            None if !BEFORE.contains(&word) => {
+                let names = COMMANDS.iter().map(|(name, _)| *name);
+                let names: Vec<&str> = BEFORE.into_iter().chain(names).collect();
+                Err(unknown_name(word, &names))
+            }
+            None if acts.is_empty() => {
+                last_set = number;
+                start.read(word, rest.trim())
+            }
+            None => {
+                let text = "Size, Seed and Set must come before any command that needs a screen";
+                Err(text.to_owned())
+            }
+        };
+        read.map_err(|message| ScriptFailure::malformed(number, &message))?;
     }
     let world = start.world(world);
     let world = world.map_err(|message| ScriptFailure::malformed(last_set, &message))?;
@@ -479,27 +444,22 @@ pub fn run(
         acts.push((1, Box::new(|runner| runner.print_screen(""))));
     }
     for (line, act) in acts {
-        act(&mut runner).map_err(|stop| runner.failure(line, stop))?;
+        act(&mut runner).map_err(|mut failure| {
+            failure.message = format!("line {line}: {}", failure.message);
+            if failure.status == 1 && failure.screen.is_empty() {
+                failure.screen = marked("|", &runner.session.screen());
+            }
+            failure
+        })?;
     }
     Ok(())
 }
 
-fn read(script: &str) -> Result<Vec<(usize, Command)>, ScriptFailure> {
-    let mut commands = Vec::new();
-    for (number, line) in (1..).zip(script.lines()) {
-        let line = line.trim();
-        if line.is_empty() || line.starts_with('#') {
-            continue;
-        }
-        let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-        let command = match COMMANDS.iter().find(|(name, _)| *name == word) {
-            Some((_, read)) => read(rest.trim()),
-            None => Err(unknown_name(word, &COMMANDS.map(|(name, _)| name))),
-        };
-        let command = command.map_err(|message| ScriptFailure::malformed(number, &message))?;
-        commands.push((number, command));
-    }
-    Ok(commands)
+fn marked(mark: &str, screen: &str) -> String {
+    let rows = screen
+        .lines()
+        .map(|row| format!("\n  {mark} {}", row.trim_end()));
+    rows.collect()
 }
 
 struct Runner<'a> {
@@ -509,25 +469,30 @@ struct Runner<'a> {
 }
 
 impl Runner<'_> {
-    fn press(&mut self, keys: &[Key]) -> Result<(), Stop> {
+    fn goes_on(&self) -> Result<(), ScriptFailure> {
+        match self.session.app().ended() {
+            true => Err(ScriptFailure::new(3, "the program had already ended")),
+            false => Ok(()),
+        }
+    }
+
+    fn press(&mut self, keys: &[Key]) -> Result<(), ScriptFailure> {
         for &key in keys {
-            if self.session.app().ended() {
-                return Err(Stop::Ended);
-            }
+            self.goes_on()?;
             self.session.press(key);
         }
         Ok(())
     }
 
-    fn print(&mut self, text: &str, name: Option<&str>) -> Result<(), Stop> {
+    fn print(&mut self, text: &str, name: Option<&str>) -> Result<(), ScriptFailure> {
         let screen = name.map(|name| (name, &self.session));
         match (self.show)(Shown { text, screen }) {
             ControlFlow::Continue(()) => Ok(()),
-            ControlFlow::Break(()) => Err(Stop::Closed),
+            ControlFlow::Break(()) => Err("the output was closed".to_owned().into()),
         }
     }
 
-    fn print_screen(&mut self, name: &str) -> Result<(), Stop> {
+    fn print_screen(&mut self, name: &str) -> Result<(), ScriptFailure> {
         let session = &self.session;
         let ((columns, rows), cursor) = (session.size(), session.cursor());
         if self.options.json {
@@ -552,7 +517,7 @@ impl Runner<'_> {
     }
 
     /// Compares the screen with a file, or writes the file.
-    fn expect_screen(&self, name: &str) -> Result<(), Stop> {
+    fn expect_screen(&self, name: &str) -> Result<(), ScriptFailure> {
         let path = self.options.folder.join(name);
         let screen = self.session.screen();
         let failed = |what: &str, error: &std::io::Error| {
@@ -561,52 +526,27 @@ impl Runner<'_> {
         if self.options.update {
             let is_inside = |part: Component<'_>| matches!(part, Component::Normal(_));
             if self.options.is_confined && !Path::new(name).components().all(is_inside) {
-                let text = format!("{name}: a script writes only below its folder");
-                return Err(Stop::Fails(text));
+                return Err(format!("{name}: a script writes only below its folder").into());
             }
             return Ok(fs::write(&path, screen).map_err(|error| failed("write", &error))?);
         }
-        let expected = fs::read_to_string(&path)
+        let saved = fs::read_to_string(&path)
             .map_err(|error| failed("read", &error) + "; --update writes it")?;
         let rows = |text: &str| {
             text.lines()
-                .map(|row| row.trim_end().to_owned())
+                .map(str::trim_end)
+                .map(str::to_owned)
                 .collect::<Vec<_>>()
         };
-        match rows(&expected) == rows(&screen) {
-            true => Ok(()),
-            false => Err(Stop::Differs(name.to_owned(), expected)),
+        if rows(&saved) == rows(&screen) {
+            return Ok(());
         }
-    }
-
-    fn failure(&self, line: usize, stop: Stop) -> ScriptFailure {
-        let screen = self.session.screen();
-        let lines = |mark: &str, text: &str| -> String {
-            text.lines()
-                .map(|row| format!("\n  {mark} {}", row.trim_end()))
-                .collect()
-        };
-        let (message, screen) = match stop {
-            Stop::Fails(message) => (message, lines("|", &screen)),
-            Stop::Differs(name, expected) => {
-                let message = format!("the screen is not that of {name}; --update writes it");
-                let screen = format!(
-                    "\nexpected{}\nfound{}",
-                    lines("-", &expected),
-                    lines("+", &screen)
-                );
-                (message, screen)
-            }
-            Stop::Ended => {
-                let message = format!("line {line}: the program had already ended");
-                return ScriptFailure::new(3, message);
-            }
-            Stop::Closed => return ScriptFailure::new(1, "stopped: the output was closed"),
-        };
-        ScriptFailure {
-            screen,
-            ..ScriptFailure::new(1, format!("line {line}: {message}"))
-        }
+        let (saved, found) = (marked("-", &saved), marked("+", &screen));
+        let message = format!("the screen is not that of {name}; --update writes it");
+        Err(ScriptFailure {
+            screen: format!("\nexpected{saved}\nfound{found}"),
+            ..message.into()
+        })
     }
 }
 
@@ -664,12 +604,18 @@ fn state(app: &App) -> Value {
     })
 }
 
+fn expected(what: &str, found: &str) -> String {
+    format!("expected {what}, found {:?}", shortened(found))
+}
+
 fn alone(name: &str, rest: &str) -> Result<(), String> {
-    if rest.is_empty() {
-        return Ok(());
+    match rest {
+        "" => Ok(()),
+        _ => Err(format!(
+            "{name} takes no argument, found {:?}",
+            shortened(rest)
+        )),
     }
-    let found = shortened(rest);
-    Err(format!("{name} takes no argument, found {found:?}"))
 }
 
 fn file_name(name: &str, what: &str) -> Result<String, String> {
@@ -679,43 +625,23 @@ fn file_name(name: &str, what: &str) -> Result<String, String> {
     }
 }
 
-fn whole<T: FromStr + PartialOrd + ToString>(text: &str, least: T, most: T) -> Result<T, String> {
+fn whole<T: FromStr + PartialOrd + Display>(text: &str, least: T, most: T) -> Result<T, String> {
     let number = text.parse().ok();
     let number = number.filter(|number| (&least..=&most).contains(&number));
-    number.ok_or_else(|| {
-        format!(
-            "expected a whole number from {} to {}, found {:?}",
-            least.to_string(),
-            most.to_string(),
-            shortened(text)
-        )
-    })
-}
-
-fn style(name: &str) -> Result<&'static str, String> {
-    let style = STYLES.iter().find(|(style, _)| *style == name);
-    style.map(|(name, _)| *name).ok_or_else(|| {
-        let names = STYLES.map(|(style, _)| style);
-        format!("style {}", unknown_name(name, &names))
-    })
+    number.ok_or_else(|| expected(&format!("a whole number from {least} to {most}"), text))
 }
 
 fn two<'a>(text: &'a str, what: &str) -> Result<(&'a str, &'a str), String> {
-    let (first, second) = text.split_once(char::is_whitespace).ok_or_else(|| {
-        let found = shortened(text);
-        format!("expected a position like 12,5 and then {what}, found {found:?}")
-    })?;
+    let (first, second) = text
+        .split_once(char::is_whitespace)
+        .ok_or_else(|| expected(&format!("a position like 12,5 and then {what}"), text))?;
     Ok((first, second.trim()))
 }
 
 /// Reads a size like `80x24`; columns and rows are at most 1000. The error does not quote the text, because a message
 /// about a flag does so already.
 pub(crate) fn size(text: &str) -> Result<(u16, u16), &'static str> {
-    let side = |text| whole(text, 1, 1000).ok();
-    let sides = text.split_once('x');
-    sides
-        .and_then(|(columns, rows)| Some((side(columns)?, side(rows)?)))
-        .ok_or("expected a size like 80x24, from 1x1 to 1000x1000")
+    pair(text, 'x', 1..=1000).ok_or("expected a size like 80x24, from 1x1 to 1000x1000")
 }
 
 fn stated_size(text: &str) -> Result<(u16, u16), String> {
@@ -724,11 +650,13 @@ fn stated_size(text: &str) -> Result<(u16, u16), String> {
 
 /// Reads a position like `12,5`: column and row of the screen.
 fn position(text: &str) -> Result<(u16, u16), String> {
-    let place = |text| whole(text, 0, 999).ok();
-    let places = text.split_once(',');
-    places
-        .and_then(|(column, row)| Some((place(column)?, place(row)?)))
-        .ok_or_else(|| format!("expected column,row like 12,5, found {:?}", shortened(text)))
+    pair(text, ',', 0..=999).ok_or_else(|| expected("column,row like 12,5", text))
+}
+
+fn pair(text: &str, between: char, allowed: RangeInclusive<u16>) -> Option<(u16, u16)> {
+    let (first, second) = text.split_once(between)?;
+    let numbers = (first.parse().ok()?, second.parse().ok()?);
+    (allowed.contains(&numbers.0) && allowed.contains(&numbers.1)).then_some(numbers)
 }
 
 fn quoted(text: &str) -> Result<String, String> {
@@ -758,10 +686,7 @@ fn pattern(text: &str) -> Result<(Regex, String), String> {
     let inner = text
         .strip_prefix('/')
         .and_then(|text| text.strip_suffix('/'));
-    let inner = inner.ok_or_else(|| {
-        let found = shortened(text);
-        format!("expected a pattern between slashes, found {found:?}")
-    })?;
+    let inner = inner.ok_or_else(|| expected("a pattern between slashes", text))?;
     let shown = format!("/{}/", shortened(inner));
     if inner.len() > LONGEST_PATTERN {
         let length = inner.len();
@@ -786,8 +711,4 @@ fn chosen<T: Copy>(name: &str, value: &str, choices: &[(&str, T)]) -> Result<T, 
             shortened(value)
         )
     })
-}
-
-fn shape(name: &str, value: &str) -> Result<StoredShape, String> {
-    StoredShape::read(value.as_bytes()).map_err(|error| format!("Set {name}: {error}"))
 }

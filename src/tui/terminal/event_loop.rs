@@ -11,8 +11,6 @@ use std::time::{Duration, Instant};
 use crossterm::Command;
 use crossterm::clipboard::CopyToClipboard;
 use crossterm::terminal::window_size;
-use ratatui::Terminal;
-use ratatui::layout::Size;
 use signal_hook::consts::{SIGCONT, SIGHUP, SIGTSTP};
 
 use crate::tui::app::change::refuse;
@@ -20,7 +18,7 @@ use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::app::unsaved::offer;
 use crate::tui::app::update::{on_worker, update};
-use crate::tui::app::view::view;
+use crate::tui::app::view::draw;
 use crate::tui::keys::action;
 use crate::tui::live::update::last_page;
 use crate::tui::runtime::effect::TerminalEffect;
@@ -71,7 +69,6 @@ pub fn run(
     session::enter(&terminal, settings, &sender)?;
     input::read(sender.clone());
     leave_on_panic();
-    let Ok(screen) = Terminal::new(Screen::new(size(settings), settings.abilities));
     let mut event_loop = EventLoop {
         watch,
         app,
@@ -79,7 +76,7 @@ pub fn run(
         terminal,
         sender,
         events,
-        screen,
+        screen: Screen::new(size(settings), settings.abilities),
         is_writing: true,
         status: None,
         frames_due: None,
@@ -126,7 +123,7 @@ struct EventLoop<'a> {
     terminal: File,
     sender: Sender<Event>,
     events: Receiver<Event>,
-    screen: Terminal<Screen>,
+    screen: Screen,
     /// Whether the terminal has not taken the last frame yet. Until then nothing is drawn, so that the next frame
     /// shows the newest state.
     is_writing: bool,
@@ -225,13 +222,13 @@ impl EventLoop<'_> {
     fn update(&mut self, message: Message) {
         match update(&mut self.app, message) {
             None => {}
-            Some(TerminalEffect::Redraw) => self.redraw(),
+            Some(TerminalEffect::Redraw) => self.measure(),
             Some(TerminalEffect::Suspend) => self.suspend(),
             Some(TerminalEffect::Copy(text)) if self.settings.kind == TerminalKind::Window => {
                 let mut sequence = String::new();
                 // Writing to a String cannot fail.
                 let _ = CopyToClipboard::to_clipboard_from(text).write_ansi(&mut sequence);
-                self.screen.backend_mut().send(&sequence);
+                self.screen.send(&sequence);
             }
             Some(TerminalEffect::Copy(_)) => {
                 let save = self.app.key_of(&action::SAVE);
@@ -248,23 +245,16 @@ impl EventLoop<'_> {
 
     /// Sends the changes of the screen, in one piece.
     fn draw(&mut self) {
-        let Ok(_) = self.screen.draw(|frame| view(&self.app, frame));
-        let bytes = self.screen.backend_mut().take_frame();
+        let bytes = self.screen.frame(|buffer| draw(&self.app, buffer));
         self.is_writing = !bytes.is_empty() && session::send(bytes);
     }
 
-    /// Forgets what the terminal shows, so that all of it is drawn next time.
-    fn redraw(&mut self) {
-        self.screen.backend_mut().forget();
-        let Ok(()) = self.screen.clear();
-    }
-
-    /// Asks the terminal for its size, and tells it to the program.
+    /// Asks the terminal for its size, tells it to the program, and draws everything next time.
     fn measure(&mut self) {
-        let Size { width, height } = size(self.settings);
-        self.screen.backend_mut().resize(Size { width, height });
-        (self.watch)(&Input::Size(width, height));
-        self.update(Message::Resized(width, height));
+        let (columns, rows) = size(self.settings);
+        self.screen = Screen::new((columns, rows), self.settings.abilities);
+        (self.watch)(&Input::Size(columns, rows));
+        self.update(Message::Resized(columns, rows));
     }
 
     fn suspend(&mut self) {
@@ -291,7 +281,6 @@ impl EventLoop<'_> {
         }
         self.is_writing = true;
         self.measure();
-        self.redraw();
     }
 }
 
@@ -301,14 +290,15 @@ fn ended_by(signal: i32) -> u8 {
 
 /// Returns the size that is set, or the one that the terminal reports. A side that it does not know, as on a serial
 /// line, comes from the environment.
-fn size(settings: &TerminalSettings) -> Size {
+fn size(settings: &TerminalSettings) -> (u16, u16) {
     let reported = || window_size().map_or((0, 0), |size| (size.columns, size.rows));
-    let (width, height) = settings.size.unwrap_or_else(reported);
-    let side = |side: u16, fallback: u16, most: u16| {
-        (if side == 0 { fallback } else { side }).clamp(1, most)
+    let (columns, rows) = settings.size.unwrap_or_else(reported);
+    let side = |known: u16, fallback: u16, most: u16| match known {
+        0 => fallback.min(most),
+        known => known.min(most),
     };
-    Size {
-        width: side(width, settings.fallback.0, LARGEST.0),
-        height: side(height, settings.fallback.1, LARGEST.1),
-    }
+    (
+        side(columns, settings.fallback.0, LARGEST.0),
+        side(rows, settings.fallback.1, LARGEST.1),
+    )
 }

@@ -25,7 +25,6 @@ const MOUSE: [&str; 2] = [
     "\x1b[?1000h\x1b[?1002h\x1b[?1006h",
     "\x1b[?1006l\x1b[?1002l\x1b[?1000l",
 ];
-const CLEAR: &str = "\x1b[H\x1b[2J";
 /// Moves to the last row: terminals clamp 999 to it.
 const BELOW: &str = "\x1b[999;1H\r\n";
 /// A frame may be unfinished, in its style, with the cursor hidden.
@@ -94,7 +93,7 @@ pub(super) fn enter(
     if !settings.kind.has_modes() {
         goodbye += BELOW;
     }
-    let _ = frames.send((hello + CLEAR).into_bytes());
+    let _ = frames.send(hello.into_bytes());
     *locked(&SESSION) = Some(Session {
         frames,
         written,

@@ -5,6 +5,7 @@
 
 use std::ffi::OsString;
 
+use crate::tui::terminal::screen::Abilities;
 use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -45,13 +46,6 @@ pub struct Flags {
     pub no_mouse: bool,
     /// `--size`: columns and rows.
     pub size: Option<(u16, u16)>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Abilities {
-    pub styles: bool,
-    /// Whether it can hold back a frame until all of it has arrived (mode 2026).
-    pub synchronized: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
