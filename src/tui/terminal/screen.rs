@@ -4,11 +4,11 @@
 //! they make reversed cells invisible where `NO_COLOR` is set, and because they send the sixteen colours in a form that
 //! old terminals misread. A key takes at most one network packet of 1,448 bytes, the first screen at most 4,500.
 
-use std::ops::Range;
-
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Color, Modifier};
+
+use crate::tui::widget::write::{self, narrow};
 
 /// The size in bytes from which a frame is held back until its end (mode 2026), or drawn without a cursor. A smaller
 /// one fits into one network packet, so it arrives in one piece.
@@ -73,11 +73,10 @@ impl Screen {
         next.reset();
         let cursor = draw(&mut next);
         let shown = std::mem::take(&mut self.shown);
-        for row in shown
-            .diff(&next)
-            .chunk_by(|(_, one, _), (_, other, _)| one == other)
-        {
-            self.draw_row(&next, row);
+        for (y, (old, new)) in (0..).zip(rows(&shown).zip(rows(&next))) {
+            if old != new {
+                self.draw_row(y, old, new);
+            }
         }
         (self.shown, self.next) = (next, shown);
         if let Some(cursor) = cursor {
@@ -104,27 +103,30 @@ impl Screen {
     }
 
     /// Draws the changed cells of a row. If only blanks follow, the rest of the row is erased.
-    fn draw_row(&mut self, next: &Buffer, changed: &[(u16, u16, &Cell)]) {
-        let y = changed[0].1;
-        let last = (0..next.area.width).rfind(|&x| !is_blank(&next[(x, y)]));
-        for &(x, y, cell) in changed {
-            let gap = self.at.filter(|at| at.y == y && at.x < x).map(|at| at.x..x);
-            let is_short =
-                |gap: &Range<u16>| gap.len() <= 4 && gap.clone().all(|x| is_blank(&next[(x, y)]));
-            // A few blanks are shorter than a move over them.
-            if let Some(gap) = gap.filter(is_short)
-                && !shows_on_blanks(self.style)
-            {
-                self.out += &" ".repeat(gap.len());
-            } else {
-                self.go(Position { x, y });
+    fn draw_row(&mut self, y: u16, old: &[Cell], new: &[Cell]) {
+        // Terminals differ in what they show of a wide character that is half overwritten.
+        let has_wide = old.iter().chain(new).any(|cell| columns(cell) > 1);
+        let last = new.iter().rposition(|cell| !is_blank(cell));
+        let mut covered = 0;
+        for (x, cell) in new.iter().enumerate() {
+            if x < covered || (!has_wide && old[x] == *cell) {
+                continue;
             }
+            covered = x + columns(cell);
+            let to = Position::new(narrow(x), y);
+            let gap = self.at.filter(|at| at.y == y && usize::from(at.x) < x);
+            let gap = gap.map(|at| &new[usize::from(at.x)..x]);
+            // A few blanks are shorter than a move over them.
+            match gap.filter(|gap| gap.len() <= 4 && gap.iter().all(is_blank)) {
+                Some(gap) if !shows_on_blanks(self.style) => self.out += &" ".repeat(gap.len()),
+                _ => self.go(to),
+            }
+            self.at = Some(to);
             if last.is_none_or(|last| x > last) {
                 if shows_on_blanks(self.style) {
                     self.set_style(PLAIN);
                 }
                 self.out += "\x1b[K";
-                self.at = Some(Position { x, y });
                 return;
             }
             if !is_blank(cell) || shows_on_blanks(self.style) {
@@ -132,8 +134,8 @@ impl Screen {
             }
             self.out += cell.symbol();
             // After the last column, and after a character that some terminals may show wider, the next move is absolute.
-            let is_certain = is_narrow(cell.symbol()) && x + 1 < next.area.width;
-            self.at = is_certain.then_some(Position { x: x + 1, y });
+            let is_certain = is_narrow(cell.symbol()) && x + 1 < new.len();
+            self.at = is_certain.then_some(Position { x: to.x + 1, y });
         }
     }
 
@@ -153,6 +155,18 @@ impl Screen {
             self.out += &sgr(style);
             self.style = style;
         }
+    }
+}
+
+fn rows(buffer: &Buffer) -> impl Iterator<Item = &[Cell]> {
+    buffer.content.chunks(usize::from(buffer.area.width).max(1))
+}
+
+/// Returns the number of columns that a cell takes.
+fn columns(cell: &Cell) -> usize {
+    match cell.symbol() {
+        symbol if is_narrow(symbol) => 1,
+        symbol => write::width(symbol).max(1),
     }
 }
 
