@@ -304,10 +304,10 @@ fn a_script_prints_while_it_runs() {
             }
         },
     );
-    let told = stopped.expect_err("it was stopped").to_string();
+    let told = stopped.expect_err("it was stopped").message;
     assert_eq!(
         (printed, told.as_str()),
-        (2, "stopped: the output was closed")
+        (2, "line 2: the output was closed")
     );
 }
 
