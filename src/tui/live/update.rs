@@ -28,7 +28,7 @@ use crate::tui::live::message::{
 use crate::tui::live::reading::{self, HeatLayer};
 use crate::tui::live::state::{Live, NO_FRAME, READ_ONCE};
 use crate::tui::live::{names, threshold, view};
-use crate::tui::prompt::state::CommandDialog;
+use crate::tui::prompt::CommandDialog;
 use crate::tui::runtime::disk::files;
 use crate::tui::runtime::effect::{Effect, FrameWork};
 use crate::tui::runtime::perform;
@@ -106,7 +106,7 @@ pub fn in_live(page: &mut Live, app: &mut App, message: &Message) -> Flow {
             let effect = adjust(app, page, asked);
             perform(app, effect);
         }
-        Message::Command => return Flow::push(CommandDialog::new(Context::Live, &app.commands)),
+        Message::Command => return Flow::push(CommandDialog::over(Context::Live, app)),
         _ => {}
     }
     Flow::Stay

@@ -35,9 +35,9 @@ use crate::tui::history::HistoryDialog;
 use crate::tui::jobs::answer;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
+use crate::tui::keys::keymap::Context;
 use crate::tui::matrix::layers::Layers;
-use crate::tui::prompt::commands::page_below;
-use crate::tui::prompt::state::{CommandDialog, NameDialog};
+use crate::tui::prompt::{CommandDialog, NameDialog};
 use crate::tui::runtime::disk::files;
 use crate::tui::runtime::effect::TerminalEffect;
 use crate::tui::runtime::perform;
@@ -152,7 +152,7 @@ fn compare_with_before(app: &mut App) {
 }
 
 fn open_command(app: &mut App) {
-    let prompt = CommandDialog::new(page_below(app), &app.commands);
+    let prompt = CommandDialog::over(Context::Matrix, app);
     app.open(prompt);
 }
 
@@ -202,9 +202,7 @@ pub(crate) fn save(app: &mut App, quits: bool) {
         },
         None => free_name(app, &name_of_origin(app)),
     };
-    let mut dialog = NameDialog::proposing(&name);
-    dialog.quits = quits;
-    app.open(dialog);
+    app.open(NameDialog::proposing(&name, quits));
 }
 
 fn outdated(app: &App, stored: &str) -> Option<String> {

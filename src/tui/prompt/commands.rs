@@ -194,14 +194,9 @@ fn command(page: Context) -> clap::Command {
     all
 }
 
-/// The page that the prompt lies over.
-pub fn page_below(app: &App) -> Context {
-    app.pane().map_or(Context::Matrix, Page::context)
-}
-
 /// Returns what a line means. An error is the first paragraph of clap's, and its tip.
 pub fn read(line: &str, app: &App) -> Result<Message, String> {
-    let page = page_below(app);
+    let page = app.pane().map_or(Context::Matrix, Page::context);
     let matches = command(page).try_get_matches_from(line.split_whitespace());
     let matches = matches.map_err(|error| {
         let text = error.render().to_string();
@@ -230,17 +225,11 @@ impl Colon {
             }
             Self::Compare { name } => shape(Purpose::Compare, &name, Message::Compare)?,
             Self::Cursor { column, row } => {
-                let sensor = &document.sensor;
-                for (what, at, count) in [
-                    ("column", column, sensor.columns()),
-                    ("row", row, sensor.rows()),
-                ] {
-                    if at >= count {
-                        let last = count - 1;
-                        return Err(format!(
-                            "{what} {at} is not on the sensor (allowed: 0 to {last})"
-                        ));
-                    }
+                let size = document.sensor.size();
+                if column >= document.sensor.columns() || row >= document.sensor.rows() {
+                    return Err(format!(
+                        "column {column}, row {row} is not on the sensor ({size})"
+                    ));
                 }
                 Message::PointAt(column, row)
             }
@@ -258,25 +247,13 @@ impl Colon {
                 let grid = grid.map_err(|error| error.to_string())?;
                 Message::Explore(ExploreMessage::Start(Box::new(grid)))
             }
-            Self::Figure { kind: None, flags } => match flags.first() {
-                Some(flag) => {
-                    return Err(format!(
-                        "--{flag}: which kind of figure? ({})",
-                        FigureKind::names().join(", ")
-                    ));
-                }
-                None => Message::Figure,
-            },
-            Self::Figure {
-                kind: Some(kind),
-                flags,
-            } => {
-                let sensor = document.sensor;
-                let figure = flags
-                    .figure(kind, &sensor)
-                    .map_err(|failure| failure.text)?;
-                let figure = Document::touched(sensor, Source::Figure(figure));
-                Message::Become(Box::new(figure))
+            Self::Figure { kind: None, flags } if flags.first().is_none() => Message::Figure,
+            Self::Figure { kind, flags } => {
+                let kind =
+                    kind.ok_or_else(|| format!("which kind: {}?", FigureKind::names().join(", ")))?;
+                let figure = flags.figure(kind, &document.sensor);
+                let figure = Source::Figure(figure.map_err(|failure| failure.text)?);
+                Message::Become(Box::new(Document::touched(document.sensor, figure)))
             }
             Self::Load { name } => shape(Purpose::Load, &name, Message::Load)?,
             Self::Move { dx, dy } => Message::Move(dx, dy),
@@ -365,10 +342,10 @@ pub fn wants_names(line: &str) -> Option<Names> {
 pub fn complete(line: &str, names: &[String], page: Context) -> (String, Vec<String>) {
     let is_name = wants_names(line).is_some();
     let (typed, candidates) = match begun(line) {
-        None => (
-            line.trim_start(),
-            listed(page).map(|own| own.get_name().to_owned()).collect(),
-        ),
+        None => {
+            let names = listed(page).into_iter().map(|own| own.line);
+            (line.trim_start(), names.collect())
+        }
         Some((_, rest)) if is_name => (rest, names.to_vec()),
         Some((name, rest)) => {
             let (before, last) = rest.rsplit_once(' ').unwrap_or(("", rest));
@@ -403,34 +380,30 @@ pub fn complete(line: &str, names: &[String], page: Context) -> (String, Vec<Str
     (format!("{before}{completed}"), fitting)
 }
 
-fn listed(page: Context) -> impl Iterator<Item = clap::Command> {
-    let mut own: Vec<clap::Command> = command(page).get_subcommands().cloned().collect();
-    own.retain(|own| !own.is_hide_set());
-    own.sort_by(|a, b| a.get_name().cmp(b.get_name()));
-    own.into_iter()
-}
-
 /// The values of the first argument, or the flags that are not given yet.
 fn next_words(name: &str, before: &str, page: Context) -> Vec<String> {
     let all = command(page);
+    let said: Vec<&str> = before.split_whitespace().collect();
     let Some(command) = all.find_subcommand(name) else {
         return Vec::new();
     };
-    let said: Vec<&str> = before.split_whitespace().collect();
     let kinds = command
         .get_positionals()
         .next()
-        .map(|first| first.get_possible_values());
-    if let (Some(kinds), []) = (kinds.filter(|kinds| !kinds.is_empty()), &said[..]) {
+        .map(clap::Arg::get_possible_values);
+    let kinds = kinds.filter(|kinds| !kinds.is_empty() && said.is_empty());
+    if let Some(kinds) = kinds {
         return kinds
             .iter()
             .map(|kind| kind.get_name().to_owned())
             .collect();
     }
-    // A flag without its value.
-    let lacks_value = said
+    if said
         .last()
-        .is_some_and(|last| last.starts_with("--") && !last.contains('='));
+        .is_some_and(|last| last.starts_with("--") && !last.contains('='))
+    {
+        return Vec::new();
+    }
     let kind = said
         .first()
         .and_then(|kind| kind.parse::<FigureKind>().ok());
@@ -438,78 +411,61 @@ fn next_words(name: &str, before: &str, page: Context) -> Vec<String> {
         let mut own = kind.into_iter().flat_map(FigureKind::parameters);
         kind.is_none() || own.any(|parameter| parameter.flag() == flag)
     };
-    let is_given = |flag: &str| {
-        said.iter()
-            .any(|word| word.trim_start_matches('-').split('=').next() == Some(flag))
-    };
-    let flags = command
-        .get_opts()
-        .filter(|_| !lacks_value)
-        .filter_map(|own| own.get_long());
-    let flags = flags.filter(|flag| of_kind(flag) && !is_given(flag));
-    flags.map(|flag| format!("--{flag}")).collect()
+    let flags = command.get_opts().filter_map(clap::Arg::get_long);
+    let flags = flags
+        .filter(|flag| of_kind(flag))
+        .map(|flag| format!("--{flag}"));
+    let is_given = |flag: &String| said.iter().any(|word| word.split('=').next() == Some(flag));
+    flags.filter(|flag| !is_given(flag)).collect()
 }
 
-/// A line that the prompt offers, with what may follow and what it does; without, it is an earlier line.
+/// A line that the prompt offers, with what may follow and what it does; without help, it is an earlier line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Offer {
     pub line: String,
+    pub follows: String,
     pub help: Option<String>,
 }
 
-const MOST_RECENT: usize = 5;
+/// The commands of a page, by name.
+pub fn listed(page: Context) -> Vec<Offer> {
+    let all = command(page);
+    let own = all.get_subcommands().filter(|own| !own.is_hide_set());
+    let offers = own.map(|own| {
+        let names = own.get_positionals().filter_map(clap::Arg::get_value_names);
+        let flag = own.get_opts().find_map(clap::Arg::get_long);
+        let flag = flag.map(|flag| format!("--{flag} ..."));
+        let words = names.flatten().map(ToString::to_string).chain(flag);
+        Offer {
+            line: own.get_name().to_owned(),
+            follows: words.collect::<Vec<_>>().join(" "),
+            help: own.get_about().map(ToString::to_string),
+        }
+    });
+    let mut offers: Vec<Offer> = offers.collect();
+    offers.sort_by(|one, other| one.line.cmp(&other.line));
+    offers
+}
 
+/// The last five lines that begin as the typed one, then the commands.
 pub fn offers(typed: &str, given: &[String], page: Context) -> Vec<Offer> {
     let typed = typed.trim_start();
-    let mut recent: Vec<&String> = Vec::new();
+    let mut offers: Vec<Offer> = Vec::new();
     for line in given.iter().rev() {
-        if line.starts_with(typed) && line != typed && !recent.contains(&line) {
-            recent.push(line);
+        let fits = line.starts_with(typed) && line != typed && offers.len() < 5;
+        if fits && offers.iter().all(|offer| offer.line != *line) {
+            let (line, follows) = (line.clone(), String::new());
+            offers.push(Offer {
+                line,
+                follows,
+                help: None,
+            });
         }
     }
-    let recent = recent.into_iter().take(MOST_RECENT);
-    let recent = recent.map(|line| Offer {
-        line: line.clone(),
-        help: None,
-    });
     let (name, more) = begun(typed).map_or((typed, false), |(name, _)| (name, true));
-    let fits =
-        |own: &clap::Command| own.get_name() == name || !more && own.get_name().contains(name);
-    let mut named: Vec<clap::Command> = listed(page).filter(fits).collect();
-    named.sort_by_key(|own| !own.get_name().starts_with(name));
-    let named = named.into_iter().map(|own| Offer {
-        line: own.get_name().to_owned(),
-        help: Some(help(&own)),
-    });
-    recent.chain(named).collect()
-}
-
-/// What may follow a command, and what it does.
-fn help(command: &clap::Command) -> String {
-    let mut words: Vec<String> = command
-        .get_positionals()
-        .flat_map(|own| own.get_value_names().unwrap_or_default())
-        .map(|name| name.to_string())
-        .collect();
-    if let Some(flag) = command.get_opts().find_map(|own| own.get_long()) {
-        words.push(format!("--{flag} ..."));
-    }
-    let about = command
-        .get_about()
-        .map(ToString::to_string)
-        .unwrap_or_default();
-    words.push(if words.is_empty() {
-        about
-    } else {
-        format!(" {about}")
-    });
-    words.join(" ")
-}
-
-/// The lines of the list in `docs/keys.md`: name, what may follow and what it does.
-pub fn described() -> Vec<Offer> {
-    let live = offers("", &[], Context::Live).into_iter();
-    let mut all = offers("", &[], Context::Matrix);
-    all.extend(live.filter(|offer| ONLY_ON_LIVE.contains(&offer.line.as_str())));
-    all
+    let mut named = listed(page);
+    named.retain(|own| own.line == name || !more && own.line.contains(name));
+    named.sort_by_key(|own| !own.line.starts_with(name));
+    offers.extend(named);
+    offers
 }

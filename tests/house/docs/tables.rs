@@ -1,7 +1,7 @@
 //! Tables in the documents, made from the program's own tables.
 
 use taxel::tui::keys::keymap::{Context, DEFAULT_KEYS};
-use taxel::tui::prompt::commands::described;
+use taxel::tui::prompt::commands::listed;
 use taxel_core::description::{DESCRIPTORS, Dimension};
 use taxel_core::parameter::{PARAMETERS, Parameter};
 use taxel_core::sensor::Sensor;
@@ -41,9 +41,11 @@ pub(crate) fn keys() -> String {
 
 /// The commands after `:`, each with what may follow it and its help.
 pub(crate) fn prompt() -> String {
-    let rows = described().into_iter().map(|offer| {
-        let help = offer.help.unwrap_or_default();
-        let (follows, help) = help.split_once("  ").unwrap_or(("", &help));
+    let live = listed(Context::Live).into_iter();
+    let live = live.filter(|own| ["at-least", "size"].contains(&own.line.as_str()));
+    let rows = listed(Context::Matrix).into_iter().chain(live);
+    let rows = rows.map(|offer| {
+        let (follows, help) = (offer.follows, offer.help.unwrap_or_default());
         let follows = if follows.is_empty() {
             String::new()
         } else {
