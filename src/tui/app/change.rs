@@ -162,6 +162,7 @@ pub(in crate::tui) fn is_other(app: &App, document: &Document) -> bool {
 /// held shape is let go.
 pub(in crate::tui) fn replace(app: &mut App, document: Document) {
     let_go(app);
+    app.pen = None;
     let present = app.history.present();
     if *present == document {
         return;

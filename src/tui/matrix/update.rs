@@ -1,12 +1,8 @@
 //! Handles messages while no page lies over the matrix, and messages that follow from a question or a command.
-//!
-//! Requests to the library, a worker or the terminal are returned as effects; everything else changes the state at
-//! once.
 
 use std::path::Path;
 
 use taxel_core::description::{DESCRIPTORS, Descriptor};
-use taxel_core::figure::Figure;
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::Parameter;
 use taxel_core::parameter::number::short;
@@ -34,7 +30,6 @@ use crate::tui::help::Help;
 use crate::tui::history::HistoryDialog;
 use crate::tui::jobs::answer;
 use crate::tui::keys::action;
-use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Context;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::prompt::{CommandDialog, NameDialog};
@@ -49,13 +44,8 @@ use crate::tui::{explore, live, recognise, shapes};
 /// none.
 const NO_REGION: &str = "no region: the matrix is empty";
 
-/// A new message has to be added here or to those that mean nothing.
 pub(in crate::tui) fn act(app: &mut App, message: Message) {
-    use Message::{
-        Accept, Answered, Cancel, Choose, Decline, Defaults, Erase, Field, Match, Mouse, Paste,
-        Redraw, Resized, Scroll, ScrollScreen, ScrollTo, Search, Select, Step, Suspend, Terminate,
-        ToEdge, ToField, Type, Unknown,
-    };
+    let (column, row) = app.cursor();
     match message {
         Message::New => empty(app),
         Message::Become(document) => replace(app, *document),
@@ -75,21 +65,28 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) {
         Message::Load => open_list(app, Purpose::Load),
         Message::Delete => open_list(app, Purpose::Delete),
         Message::Picture => open_picture(app),
-        Message::Figure => open_form(app, FormDialog::figure(app.history.present(), &app.forms)),
-        Message::Sensor => open_form(app, FormDialog::sensor(app.history.present())),
+        // A held shape stays held, so that a form that is cancelled changes nothing.
+        Message::Figure => app.open(FormDialog::figure(app.history.present(), &app.forms)),
+        Message::Sensor => app.open(FormDialog::sensor(app.history.present())),
         Message::Save => save(app, false),
-        Message::Command => open_command(app),
+        Message::Command => app.open(CommandDialog::over(Context::Matrix, app)),
         Message::History => open_history(app),
-        Message::Explain => {
-            let page = Explain::new(app);
-            app.open(page);
-        }
+        Message::Explain => app.open(Explain::new(app)),
         Message::Draw => draw_on(app),
         Message::Help => app.open(Help::new(app.context())),
-        Message::Cursor(arrow) => move_cursor(app, arrow),
-        Message::PointAt(column, row) => point_at(app, column, row),
-        Message::ToColumn(end) => to_column(app, end),
-        Message::ToRow(end) => to_row(app, end),
+        Message::Cursor(arrow) => {
+            let (dx, dy) = arrow.step();
+            let (column, row) = (
+                column.saturating_add_signed(dx),
+                row.saturating_add_signed(dy),
+            );
+            put_cursor(app, column, row);
+        }
+        Message::PointAt(column, row) => put_cursor(app, column, row),
+        Message::ToColumn(Endpoint::First) => put_cursor(app, 0, row),
+        Message::ToColumn(Endpoint::Last) => put_cursor(app, u8::MAX, row),
+        Message::ToRow(Endpoint::First) => put_cursor(app, column, 0),
+        Message::ToRow(Endpoint::Last) => put_cursor(app, column, u8::MAX),
         Message::Toggle => toggle(app),
         Message::Undo => travel(app, History::undo, "undone", "nothing to undo"),
         Message::Redo => travel(app, History::redo, "redone", "nothing to redo"),
@@ -97,40 +94,16 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) {
         Message::Display => next_display(app),
         Message::Layer(layer) => switch_layer(app, layer),
         Message::SwitchPane => switch_pane(app),
-        Message::Hold => hold_or_let_go(app),
+        Message::Hold if app.held.is_some() => let_go(app),
+        Message::Hold => hold(app),
         Message::PutBack => put_back(app),
         Message::Nudge(arrow) => nudge(app, arrow),
         Message::Move(dx, dy) => shift(app, dx, dy),
         Message::Turn(degrees) => turn(app, degrees),
         Message::Zoom(direction) => zoom(app, direction),
         Message::NudgeStep(direction) => change_step(app, direction),
-        // These mean something only on a page, or never reach the matrix: `app::update` handles them.
-        Accept
-        | Cancel
-        | Choose(_)
-        | Decline
-        | Defaults
-        | Erase(_)
-        | Field(_)
-        | Match(_)
-        | Mouse(_)
-        | Paste(_)
-        | Redraw
-        | Resized(..)
-        | Scroll(_)
-        | ScrollScreen(_)
-        | ScrollTo(_)
-        | Search
-        | Select(_)
-        | Step(_)
-        | Suspend
-        | Terminate
-        | ToEdge(_)
-        | ToField(_)
-        | Type(_)
-        | Unknown(_)
-        | Answered
-        | Message::Refused(_) => {}
+        // The others mean something only on a page, or never reach the matrix.
+        _ => {}
     }
 }
 
@@ -149,11 +122,6 @@ fn compare_with_before(app: &mut App) {
         Some(before) => compare_with(app, "the state before", &before.imprint),
         None => refuse(app, "nothing to compare with: this is the first state"),
     }
-}
-
-fn open_command(app: &mut App) {
-    let prompt = CommandDialog::over(Context::Matrix, app);
-    app.open(prompt);
 }
 
 fn open_history(app: &mut App) {
@@ -175,15 +143,13 @@ fn open_picture(app: &mut App) {
         (None, Some((name, imprint))) => (Picture::at_home(*imprint).named(name), name),
         _ => return open_list(app, Purpose::Picture),
     };
-    let form = FormDialog::picture(present, picture, name.to_owned());
-    open_form(app, form);
+    app.open(FormDialog::picture(present, picture, name.to_owned()));
     let load = app.key_of(&action::LOAD);
     inform(app, format!("{load} loads another shape"));
 }
 
-/// Opens the prompt for a name. It proposes the name of the document if that is a shape of the user's own, unless the
-/// name gives the sizes of a figure that has other sizes by now. A shipped shape cannot be replaced, so a new name is
-/// proposed for it, as for a drawing without a name.
+/// Opens the prompt for a name. It proposes the name of the document if that is a shape of the user's own; a shipped
+/// shape cannot be replaced.
 pub(crate) fn save(app: &mut App, quits: bool) {
     if app.reading().imprint.is_empty() {
         return refuse(app, "nothing to save: the matrix is empty");
@@ -192,36 +158,18 @@ pub(crate) fn save(app: &mut App, quits: bool) {
         let text = format!("{} is still being saved", save.shape.name);
         return refuse(app, text);
     }
-    let own = app
-        .stored()
-        .filter(|stored| stored.owner == ShapeOrigin::Own);
-    let name = match own {
-        Some(stored) => match outdated(app, &stored.name) {
-            Some(present) => free_name(app, &present),
-            None => stored.name.clone(),
-        },
-        None => free_name(app, &name_of_origin(app)),
+    let name = match app.stored() {
+        Some(stored) if stored.owner == ShapeOrigin::Own => stored.name.clone(),
+        _ => {
+            let name = name_of_origin(app);
+            let numbered = (2..).map(|number| format!("{name} {number}"));
+            let mut names = std::iter::once(name.clone()).chain(numbered);
+            names
+                .find(|name| !app.history.knows(name))
+                .unwrap_or_default()
+        }
     };
     app.open(NameDialog::proposing(&name, quits));
-}
-
-fn outdated(app: &App, stored: &str) -> Option<String> {
-    let name = |document: &Document| match &document.source {
-        Some(Source::Figure(figure)) => Some(name_of_figure(figure)),
-        _ => None,
-    };
-    let then = name(&app.history.origin().saved)?;
-    let now = name(app.history.present())?;
-    (then == stored && now != then).then_some(now)
-}
-
-fn free_name(app: &App, name: &str) -> String {
-    let (mut free, mut number) = (name.to_owned(), 2);
-    while app.history.knows(&free) {
-        free = format!("{name} {number}");
-        number += 1;
-    }
-    free
 }
 
 fn name_of_origin(app: &App) -> String {
@@ -232,26 +180,28 @@ fn name_of_origin(app: &App) -> String {
         return proposed.clone();
     }
     match &app.history.present().source {
-        Some(Source::Figure(figure)) => name_of_figure(figure),
-        Some(Source::Picture(picture)) => picture
-            .name()
-            .map_or_else(|| "picture".to_owned(), |name| format!("{name} moved")),
+        Some(Source::Figure(figure)) => {
+            let size = |&parameter: &Parameter| figure.get(parameter).map(short);
+            let sizes: Vec<String> = figure.kind().sizes().iter().filter_map(size).collect();
+            let name = format!("{} {}", figure.kind().name(), sizes.join(" x "));
+            match figure
+                .get(Parameter::Thickness)
+                .filter(|_| figure.has_hole())
+            {
+                Some(thickness) => format!("{name} thickness {}", short(thickness)),
+                None => name,
+            }
+        }
+        Some(Source::Picture(picture)) => match picture.name() {
+            Some(name) => format!("{name} moved"),
+            None => "picture".to_owned(),
+        },
         None => "drawing".to_owned(),
     }
 }
 
 pub(in crate::tui) fn name_of_copy(name: &str) -> String {
     format!("{name} copy")
-}
-
-fn name_of_figure(figure: &Figure) -> String {
-    let size = |&parameter: &Parameter| figure.get(parameter).map(short);
-    let sizes: Vec<String> = figure.kind().sizes().iter().filter_map(size).collect();
-    let wall = figure
-        .get(Parameter::Thickness)
-        .filter(|_| figure.has_hole());
-    let wall = wall.map_or(String::new(), |wall| format!(" wall {}", short(wall)));
-    format!("{} {}{wall}", figure.kind().name(), sizes.join(" x "))
 }
 
 /// Shows the coverage in shades, then in percent, then the imprint again. Coverage is the share of a taxel that a shape
@@ -307,23 +257,13 @@ fn switch_pane(app: &mut App) {
     };
 }
 
-fn hold_or_let_go(app: &mut App) {
-    if app.held.is_some() {
-        let_go(app);
-    } else {
-        hold(app);
-    }
-}
-
 /// Sends a text to the terminal, which may put it into its clipboard, but never reports whether it does. Descriptors
 /// are one to a line, key and value with a tab between; the imprint is in the form of its text files.
 fn copy(app: &mut App, what: Copied) {
     let seen = app.reading();
     let (name, text) = match (what, seen.description(app.chosen())) {
         (Copied::Imprint, _) => ("imprint", seen.imprint.to_string() + "\n"),
-        (Copied::Descriptors, None) => {
-            return refuse(app, NO_REGION);
-        }
+        (Copied::Descriptors, None) => return refuse(app, NO_REGION),
         (Copied::Descriptors, Some(description)) => {
             let line = |descriptor: &Descriptor| {
                 let value = value::text((descriptor.measure)(&description), descriptor.dimension);
@@ -340,11 +280,6 @@ fn copy(app: &mut App, what: Copied) {
     app.terminal = Some(TerminalEffect::Copy(text));
 }
 
-/// Opens a form. A held shape stays held, so that a form that is cancelled changes nothing.
-fn open_form(app: &mut App, form: FormDialog) {
-    app.open(form);
-}
-
 fn has_none(app: &App) -> String {
     let (figure, place) = (app.key_of(&action::FIGURE), app.key_of(&action::PICTURE));
     if app.loaded_imprint().is_some() {
@@ -356,42 +291,33 @@ fn has_none(app: &App) -> String {
     }
 }
 
-/// Shows a layer or hides it. The notice names it, and says why if there is nothing to see yet: what comes later is
-/// shown with it. Whether a layer is shown by default depends on the size of taxels, so the switch inverts what is
-/// visible now.
+/// Shows a layer or hides it. The notice names it, and says why if there is nothing to see yet. Whether a layer is shown
+/// by default depends on the size of taxels, so the switch inverts what is visible now.
 fn switch_layer(app: &mut App, layer: Layer) {
     let Some(grid) = app.grid() else { return };
-    let (name, now, missing) = match layer {
-        Layer::Outline => (
-            "the outline",
-            app.layers.outline,
-            app.shown().source.is_none(),
-        ),
-        Layer::Rectangle => (
-            "rectangle, CG (G) and CD (D)",
-            app.layers.rectangle,
-            app.reading().regions.is_empty(),
-        ),
+    let (missing, layers) = (has_none(app), app.layers);
+    let (name, missing, now) = match layer {
+        Layer::Outline => {
+            let missing = app.shown().source.is_none().then(|| format!(": {missing}"));
+            ("the outline", missing, layers.outline)
+        }
+        Layer::Rectangle => {
+            let missing = app.reading().regions.is_empty();
+            let missing = missing.then(|| ", once there is a region".to_owned());
+            ("rectangle, CG (G) and CD (D)", missing, layers.rectangle)
+        }
     };
     let show = !Layers::shown(now, &grid);
     match layer {
         Layer::Outline => app.layers.outline = Some(show),
         Layer::Rectangle => app.layers.rectangle = Some(show),
     }
-    let text = match (show, missing, layer) {
-        (false, ..) => format!("without {name}"),
-        (true, false, _) => format!("with {name}"),
-        (true, true, Layer::Outline) => format!("with {name}: {}", has_none(app)),
-        (true, true, Layer::Rectangle) => format!("with {name}, once there is a region"),
+    let text = if show {
+        format!("with {name}{}", missing.unwrap_or_default())
+    } else {
+        format!("without {name}")
     };
     inform(app, text);
-}
-
-fn at_end(end: Endpoint, count: u8) -> u8 {
-    match end {
-        Endpoint::First => 0,
-        Endpoint::Last => count - 1,
-    }
 }
 
 /// Takes the next larger or smaller step. A notice says if there is none. Refused if there is no shape to move.
@@ -410,28 +336,10 @@ fn change_step(app: &mut App, direction: i8) {
     }
 }
 
-fn point_at(app: &mut App, column: u8, row: u8) {
+/// Puts the cursor on a taxel, or the nearest one on the sensor.
+fn put_cursor(app: &mut App, column: u8, row: u8) {
     let sensor = app.history.present().sensor;
     app.cursor = (column.min(sensor.columns() - 1), row.min(sensor.rows() - 1));
-}
-
-fn to_column(app: &mut App, end: Endpoint) {
-    let columns = app.history.present().sensor.columns();
-    app.cursor = (at_end(end, columns), app.cursor().1);
-}
-
-fn to_row(app: &mut App, end: Endpoint) {
-    let rows = app.history.present().sensor.rows();
-    app.cursor = (app.cursor().0, at_end(end, rows));
-}
-
-fn move_cursor(app: &mut App, arrow: Arrow) {
-    let sensor = app.history.present().sensor;
-    let ((dx, dy), (column, row)) = (arrow.step(), app.cursor());
-    app.cursor = (
-        column.saturating_add_signed(dx).min(sensor.columns() - 1),
-        row.saturating_add_signed(dy).min(sensor.rows() - 1),
-    );
     // The taxels of a run are one change, like those of a drag.
     if let Some(active) = app.pen {
         let (column, row) = app.cursor();
@@ -498,10 +406,8 @@ fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
         ));
     }
     let own = Path::new(name).file_stem().and_then(|stem| stem.to_str());
-    let own = app.stored_name().or(own).map(Name::new);
-    let name = own
-        .and_then(Result::ok)
-        .map_or_else(|| Name::new(UNNAMED), Ok);
+    let own = app.stored_name().or(own).unwrap_or(UNNAMED);
+    let name = Name::new(own).or_else(|_| Name::new(UNNAMED));
     let name = name.map_err(|error| error.to_string())?;
     Ok(app.shown().to_shape(name, reading).write().into_bytes())
 }
