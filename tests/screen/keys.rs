@@ -458,15 +458,6 @@ fn putting_back_overwrites_no_step_but_that_of_the_last_move() {
     shows(&format!("{drawn}u"), &["at 4.01, 4.00", "by hand"]);
 }
 
-/// What was undone before the shape was taken can still be redone, whether Esc or the arrows put it back.
-#[test]
-fn a_shape_that_is_put_back_leaves_what_can_be_redone() {
-    for back in ["<Right><Esc>", "<Right><Left>g", "<Right><Left><Esc>"] {
-        let redone = format!("f<Enter><Space>ug{back}U");
-        shows(&redone, &["redone: taxel", "+ 1 by hand"]);
-    }
-}
-
 /// The list of steps leaves out a move that came to nothing; a further move is a step of its own.
 #[test]
 fn moves_after_a_move_that_came_to_nothing_can_be_undone() {

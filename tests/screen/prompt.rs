@@ -101,7 +101,7 @@ fn commands_change_the_matrix() {
         ("cursor 3 12", "column  3, row 12"),
         (
             "cursor 16 0",
-            "! column 16 is not on the sensor (allowed: 0 to 15)",
+            "! column 16, row 0 is not on the sensor (16 × 16)",
         ),
         ("move 0.5 -1.25", "at 4.50, 2.75"),
         ("move 0 -100", "! y0: -96 is below -16"),

@@ -20,7 +20,7 @@ use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Context;
 use crate::tui::prompt::commands::{Names, complete, offers, read, wants_names};
 use crate::tui::runtime::disk::files;
-use crate::tui::shapes::update::sentence;
+use crate::tui::shapes::library::sentence;
 use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, narrow};
@@ -52,7 +52,7 @@ impl LinePrompt for NameDialog {
         match (message, Name::new(self.field.text())) {
             (Message::Accept, Ok(name)) => {
                 let quits = self.quits;
-                return Flow::ask(move |app| shapes::update::save(app, name, quits));
+                return Flow::ask(move |app| shapes::library::save(app, name, quits));
             }
             (Message::Accept, Err(error)) => refuse(app, error.to_string()),
             _ => _ = self.field.take(message),
