@@ -32,7 +32,7 @@ use crate::tui::widget::write;
 /// The text after the source if the shape is not wholly on the sensor. It is never shortened; the text before it is.
 const BEYOND: &str = "; reaches beyond the sensor";
 
-pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
+pub(crate) fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
     let (theme, seen) = (app.theme(), app.reading());
     if !hides_matrix(app) {
         let beyond = if seen.beyond { BEYOND } else { "" };
@@ -40,24 +40,22 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
         let source = source(app, panes);
         let source = theme.text(&source);
         let source = write::fitted(&source, room, theme);
-        let in_form = app.pane().map(Page::slot) == Some(Slot::Form);
-        let line = if in_form && panes.form_panel.is_none() {
-            described(app, seen)
-        } else {
-            taxel(app, seen)
-        };
         let pieces = [&*source, beyond].map(|piece| (piece, Role::Text));
         write::line(buffer, panes.source, theme, pieces);
+        let in_form = app.pane().map(Page::slot) == Some(Slot::Form);
+        let line = match in_form && panes.form_panel.is_none() {
+            true => described(app, seen),
+            false => taxel(app, seen),
+        };
         write::text(buffer, panes.taxel, theme, &line, Role::Text);
     }
     menu::draw(theme, buffer, &menu::hints(app, panes));
-    let prompt = app.top_page();
-    let prompt = prompt.filter(|page| page.slot() == Slot::Prompt);
-    if let Some(page) = prompt {
-        page.draw_over(theme, buffer, panes.body);
-    }
-    let cursor = prompt.and_then(|page| page.draw(theme, app.keymap(), buffer, panes.notice));
     let top = app.top_page();
+    let prompt = top.filter(|page| page.slot() == Slot::Prompt);
+    let cursor = prompt.and_then(|page| {
+        page.draw_over(theme, buffer, panes.body);
+        page.draw(theme, app.keymap(), buffer, panes.notice)
+    });
     if let Some((text, role)) = notice(app, panes, top) {
         let block = block(app, panes, &text);
         write::clear(buffer, block);
@@ -67,51 +65,45 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
 }
 
 fn hides_matrix(app: &App) -> bool {
-    let pages = app.pages().filter(|page| page.has_pane());
-    let slots: Vec<Slot> = pages.map(Page::slot).collect();
-    match slots.last() {
-        Some(Slot::Body) => slots.contains(&Slot::Screen),
-        top => top == Some(&Slot::Screen),
+    let mut slots = app.pages().filter(|page| page.has_pane()).map(Page::slot);
+    match slots.next_back() {
+        Some(Slot::Body) => slots.any(|slot| slot == Slot::Screen),
+        top => top == Some(Slot::Screen),
     }
 }
 
 fn source(app: &App, panes: &Panes) -> String {
     let document = app.shown();
-    let by_hand = document.edits.count();
     // Where there is no title, the name stands here.
     let own = name(app).filter(|_| panes.title.height == 0);
     let name = own.map_or(String::new(), |name| format!("{name}: "));
-    let Some(source) = &document.source else {
-        // The text is the same before and after the first taxel, which saves a dozen bytes then.
-        let (draw, figure) = (app.key_of(&action::TOGGLE), app.key_of(&action::FIGURE));
-        let place = app.key_of(&action::PICTURE);
-        let origin = app.history.origin();
-        let (made, keys) = match origin.brought_by.as_deref() {
-            _ if app.loaded_imprint().is_some() => (
-                "stored shape",
-                format!("{place} moves and turns it, {draw} draws"),
-            ),
-            // An imprint from elsewhere is there to be read, not to be drawn on.
-            Some(brought_by) if !app.reading().imprint.is_empty() => {
-                return name + brought_by;
-            }
-            brought_by => (
-                brought_by.unwrap_or("drawn by hand"),
-                format!("{draw} draws, {figure} places a figure"),
-            ),
+    if let Some(source) = &document.source {
+        return match document.edits.count() {
+            0 => format!("{name}{source}"),
+            by_hand => format!("{name}{source} + {by_hand} by hand"),
         };
-        // Over most pages these keys do something else.
-        return if app.context().leads_to(Context::Matrix) {
-            format!("{name}{made}: {keys}")
-        } else {
-            name + made
-        };
-    };
-    let mut text = name + &source.to_string();
-    if by_hand > 0 {
-        text += &format!(" + {by_hand} by hand");
     }
-    text
+    let (draw, place) = (app.key_of(&action::TOGGLE), app.key_of(&action::PICTURE));
+    let brought_by = app.history.origin().brought_by.as_deref();
+    let (made, keys) = match brought_by {
+        _ if app.loaded_imprint().is_some() => (
+            "stored shape",
+            format!("{place} moves and turns it, {draw} draws"),
+        ),
+        // An imprint from elsewhere is there to be read, not to be drawn on.
+        Some(brought_by) if !app.reading().imprint.is_empty() => return name + brought_by,
+        // The text is the same before and after the first taxel, which saves a dozen bytes then.
+        brought_by => {
+            let figure = app.key_of(&action::FIGURE);
+            let made = brought_by.unwrap_or("drawn by hand");
+            (made, format!("{draw} draws, {figure} places a figure"))
+        }
+    };
+    // Over most pages these keys do something else.
+    match app.context().leads_to(Context::Matrix) {
+        true => format!("{name}{made}: {keys}"),
+        false => name + made,
+    }
 }
 
 /// Returns the main descriptors. A form that covers all descriptors leaves these visible, so that the user sees them
@@ -136,65 +128,64 @@ fn described(app: &App, seen: &Reading) -> String {
 /// Returns the line about the taxel under the cursor and the step of moving. Every part has a fixed place, and parts
 /// that change together stand together: so little is sent over the line when the cursor moves.
 fn taxel(app: &App, seen: &Reading) -> String {
-    let all = format!("NA {} in all", seen.imprint.count());
-    // The step of moving and zooming, if there is a shape to move.
-    let held = if app.held.is_some() { "held, " } else { "" };
-    let pen = if app.pen.is_some() { "drawing" } else { "" };
-    let step = app.shown().source.as_ref();
-    let step = step.map_or(String::new(), |_| format!("{held}step {}", app.step));
     let (column, row) = app.cursor();
     let wide = |side: u8| (side - 1).to_string().len();
     let (across, down) = (wide(seen.imprint.columns()), wide(seen.imprint.rows()));
-    let active = seen.imprint.get(column, row);
-    let state = format!("{:>8}", if active { "active" } else { "inactive" });
     let covered = seen.coverage(column, row);
-    let covered = covered.map_or(String::new(), |coverage| format!("covered {coverage:.6}"));
-    let place = format!("column {column:>across$}, row {row:>down$}");
-    let mut pieces = vec![place, covered, state, all, step, pen.to_owned()];
-    pieces.retain(|piece| !piece.is_empty());
-    pieces.join("  ")
+    let state = match seen.imprint.get(column, row) {
+        true => "  active",
+        false => "inactive",
+    };
+    // The step of moving and zooming, if there is a shape to move.
+    let held = if app.held.is_some() { "held, " } else { "" };
+    let step = app.shown().source.as_ref();
+    let pieces = [
+        Some(format!("column {column:>across$}, row {row:>down$}")),
+        covered.map(|coverage| format!("covered {coverage:.6}")),
+        Some(state.to_owned()),
+        Some(format!("NA {} in all", seen.imprint.count())),
+        step.map(|_| format!("{held}step {}", app.step)),
+    ];
+    pieces.into_iter().flatten().collect::<Vec<_>>().join("  ")
 }
 
 /// A question stands after the notice.
-pub fn notice(app: &App, panes: &Panes, top: Option<&dyn Page>) -> Option<(String, Role)> {
+fn notice(app: &App, panes: &Panes, top: Option<&dyn Page>) -> Option<(String, Role)> {
     let last = app.pages.len().saturating_sub(1);
     if let Some(question) = find::<Question>(&app.pages[last..]) {
         return Some((asked(app, panes, question), Role::Error));
     }
-    let remark = top.and_then(|page| page.remark(app.keymap(), panes.body));
     let notice = app.notice.as_ref().map(|notice| match notice {
         Notice::Info(text) => (text.clone(), Role::Key),
         Notice::Refusal(text) | Notice::Failure(text) => (format!("! {text}"), Role::Error),
     });
-    let waiting = || Some((app.jobs.waiting()?, Role::Key));
-    let notice = notice.or_else(waiting);
+    let notice = notice.or_else(|| Some((app.jobs.waiting()?, Role::Key)));
     match (notice, top.and_then(Page::alarm)) {
-        (Some((text, Role::Error)), Some(alarm)) => Some((format!("{text}; {alarm}"), Role::Error)),
-        // The mark of an error stands before the error alone.
-        (Some((text, _)), Some(alarm)) => Some((format!("{text}; ! {alarm}"), Role::Error)),
-        (notice, _) => notice.or(remark),
+        (Some((text, role)), Some(alarm)) => {
+            // The mark of an error stands before the error alone.
+            let mark = if role == Role::Error { "" } else { "! " };
+            Some((format!("{text}; {mark}{alarm}"), Role::Error))
+        }
+        (notice, _) => notice.or_else(|| top?.remark(app.keymap(), panes.body)),
     }
 }
 
 /// Returns a question with its answers, after the notice. Where there is too little room, the notice is left out,
 /// then the sentences before the question: the answers are always there.
 fn asked(app: &App, panes: &Panes, question: &Question) -> String {
-    let answers = question.answers(app.keymap());
-    // A question without sentences before it may be too long itself: it has a name in it.
-    let (start, end) = match question.about.as_str() {
-        "" => (&*question.text, answers),
-        about => (about, format!("{} {answers}", question.text)),
+    let end = format!("{} {}", question.text, question.answers(app.keymap()));
+    let start = match question.about.as_str() {
+        "" => end.clone(),
+        about => format!("{about} {end}"),
     };
     let room = panes.notice.bottom().saturating_sub(panes.body.y);
     let fits = |text: &String| lines(app, panes, text) <= usize::from(room);
-    let said = match &app.notice {
-        Some(Notice::Info(said) | Notice::Refusal(said) | Notice::Failure(said)) => {
-            format!("{said}. ")
+    let said = app.notice.as_ref().map(|notice| match notice {
+        Notice::Info(said) | Notice::Refusal(said) | Notice::Failure(said) => {
+            format!("{said}. {start}")
         }
-        None => String::new(),
-    };
-    let texts = [format!("{said}{start} {end}"), format!("{start} {end}")];
-    texts.into_iter().find(fits).unwrap_or(end)
+    });
+    said.into_iter().chain([start]).find(fits).unwrap_or(end)
 }
 
 fn lines(app: &App, panes: &Panes, text: &str) -> usize {
@@ -202,32 +193,28 @@ fn lines(app: &App, panes: &Panes, text: &str) -> usize {
 }
 
 /// A prompt keeps its line, and the notice stands above it.
-pub fn block(app: &App, panes: &Panes, text: &str) -> Rect {
-    let is_typed = |page: &dyn Page| page.slot() == Slot::Prompt;
-    let is_typed = app.top_page().is_some_and(is_typed);
-    let last = Rect {
-        y: panes.notice.y - u16::from(is_typed),
-        ..panes.notice
-    };
-    let lines = lines(app, panes, text);
-    let room = last.bottom().saturating_sub(panes.body.y);
-    let height = u16::try_from(lines).unwrap_or(room).clamp(1, room.max(1));
+fn block(app: &App, panes: &Panes, text: &str) -> Rect {
+    let is_typed = app.top_page().map(Page::slot) == Some(Slot::Prompt);
+    let bottom = panes.notice.bottom() - u16::from(is_typed);
+    let room = bottom.saturating_sub(panes.body.y).max(1);
+    let height = u16::try_from(lines(app, panes, text)).unwrap_or(room);
+    let height = height.clamp(1, room);
     Rect {
-        y: last.bottom() - height,
+        y: bottom - height,
         height,
-        ..last
+        ..panes.notice
     }
 }
 
-pub fn page_area(app: &App, panes: &Panes, page: &dyn Page) -> Rect {
+/// Returns the place of a page, which may end above a notice of several lines.
+pub(crate) fn page_area(app: &App, panes: &Panes, page: &dyn Page) -> Rect {
     let area = panes.area(page.slot());
     if !page.makes_room() {
         return area;
     }
-    let top = app.top_page();
-    let over = top.filter(|top| matches!(top.slot(), Slot::Prompt | Slot::Question));
-    let text = notice(app, panes, over.or(Some(page))).map(|(text, _)| text);
-    let end = text.map_or(area.bottom(), |text| block(app, panes, &text).y);
+    let over = app.top_page().filter(|top| !top.has_pane());
+    let said = notice(app, panes, over.or(Some(page)));
+    let end = said.map_or(area.bottom(), |(text, _)| block(app, panes, &text).y);
     Rect {
         height: end.min(area.bottom()).saturating_sub(area.y),
         ..area
@@ -268,10 +255,8 @@ pub(in crate::tui) fn name(app: &App) -> Option<String> {
 }
 
 fn threshold(sensor: &Sensor) -> String {
-    let (exact, short) = (
-        sensor.threshold().to_string(),
-        format!("{:.2}", sensor.threshold()),
-    );
+    let exact = sensor.threshold().to_string();
+    let short = format!("{:.2}", sensor.threshold());
     if exact.len() > short.len() {
         exact
     } else {

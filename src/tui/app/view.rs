@@ -36,48 +36,38 @@ use crate::tui::widget::write::{self, below, right_of};
 
 /// Returns the position of the terminal's cursor; None if it is hidden.
 pub fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
-    let area = buffer.area;
-    let theme = app.theme();
+    let (area, theme) = (buffer.area, app.theme());
     let Some(panes) = Panes::of(area, &app.reading().imprint, app.halves()) else {
         too_small(theme, buffer, area);
         return None;
     };
     menu::draw(theme, buffer, &menu::menu(app, panes.menu));
-    let covers = |slot| matches!(slot, Slot::Screen | Slot::Body);
-    if !app.pane().map(Page::slot).is_some_and(covers) {
-        let title = title(app);
-        write::text(buffer, panes.title, theme, &title, Role::Text);
+    let (page, slot) = (app.pane(), app.pane().map(Page::slot));
+    if !matches!(slot, Some(Slot::Screen | Slot::Body)) {
+        write::text(buffer, panes.title, theme, &title(app), Role::Text);
     }
-    let panel = |buffer: &mut Buffer, area: Rect| panel::draw(app, buffer, area);
+    // A narrow screen shows one pane at a time.
+    let sees = |pane| panes.panel.is_some() || app.narrow_pane == pane;
+    let sees_matrix = match slot {
+        None | Some(Slot::Panel) => sees(NarrowPane::Matrix),
+        slot => slot == Some(Slot::Form),
+    };
     let mut cursor = None;
-    match (app.pane(), panes.panel) {
-        (Some(page), beside) if page.slot() == Slot::Panel => {
-            if beside.is_some() || app.narrow_pane == NarrowPane::Matrix {
-                cursor = matrix::view::draw(app, buffer, panes.matrix);
-            }
-            if beside.is_some() || app.narrow_pane == NarrowPane::Panel {
-                let area = panes.area(Slot::Panel);
-                write::clear(buffer, area);
-                cursor = page.draw(theme, app.keymap(), buffer, area).or(cursor);
-            }
-        }
-        (Some(page), _) => {
-            if page.slot() == Slot::Form {
-                matrix::view::draw(app, buffer, panes.matrix);
-                if let Some(area) = panes.form_panel {
-                    panel(buffer, area);
-                }
+    if sees_matrix {
+        cursor = matrix::view::draw(app, buffer, panes.matrix);
+    }
+    match (page, panes.form_panel) {
+        (None, _) if sees(NarrowPane::Panel) => panel::draw(app, buffer, panes.area(Slot::Panel)),
+        (Some(page), beside) if slot != Some(Slot::Panel) || sees(NarrowPane::Panel) => {
+            if let Some(beside) = beside.filter(|_| slot == Some(Slot::Form)) {
+                panel::draw(app, buffer, beside);
             }
             let area = status::page_area(app, &panes, page);
             write::clear(buffer, area);
-            cursor = page.draw(theme, app.keymap(), buffer, area);
+            let own = page.draw(theme, app.keymap(), buffer, area);
+            cursor = own.or(cursor.filter(|_| slot == Some(Slot::Panel)));
         }
-        (None, Some(beside)) => {
-            cursor = matrix::view::draw(app, buffer, panes.matrix);
-            panel(buffer, beside);
-        }
-        (None, None) if app.narrow_pane == NarrowPane::Panel => panel(buffer, panes.content),
-        (None, None) => cursor = matrix::view::draw(app, buffer, panes.matrix),
+        _ => {}
     }
     // A name and a command are typed in the line of notices.
     cursor = status::draw(app, buffer, &panes).or(cursor);
@@ -92,21 +82,17 @@ fn too_small(theme: &Theme, buffer: &mut Buffer, area: Rect) {
     write::wrapped(buffer, area, theme, &text, Role::Error);
 }
 
+/// The columns that the descriptors need, and those that they have where there is room.
 const PANEL: u16 = 30;
-
-const BOTH: u16 = RULER + 2 * 16 + 1 + PANEL;
-
 const WIDE_PANEL: u16 = 44;
 
+/// The columns of a matrix of usual size with the descriptors beside it.
+const BOTH: u16 = RULER + 2 * 16 + 1 + PANEL;
+
+/// The columns that a form needs, has beside the descriptors, and has where there is room.
 const FORM: u16 = 22;
-
-const WIDE_FORM: u16 = 40;
 const NARROW_FORM: u16 = 32;
-
-const LOW_FORM: u16 = 8;
-
-const LONGEST_FORM: u16 = 18;
-const LOW_PANEL: u16 = 10;
+const WIDE_FORM: u16 = 40;
 
 /// On a lower screen matrix and descriptors each have the screen to themselves. A line less than 24, so that the line
 /// of a terminal multiplexer takes nothing but the title.
@@ -140,29 +126,17 @@ impl Panes {
         }
         let is_full = area.height >= FULL;
         let foot = if is_full { 4 } else { 2 };
-        let line = |from_bottom: u16| Rect {
-            y: area.bottom() - from_bottom,
-            height: 1,
-            ..area
-        };
-        let absent = Rect { height: 0, ..area };
-        let body = Rect {
-            y: area.y + 1,
-            height: area.height - 1 - foot,
-            ..area
-        };
-        let title = Rect {
-            height: u16::from(area.height > FULL),
-            ..body
-        };
+        let part = |y, height| Rect { y, height, ..area };
+        let line = |from_bottom| part(area.bottom() - from_bottom, 1);
+        let body = part(area.y + 1, area.height - 1 - foot);
+        let title = part(body.y, u16::from(area.height > FULL));
         let content = below(body, title.height);
         let width = matrix_width(content, imprint, halves);
         let matrix = Rect { width, ..content };
-        let left = (matrix.right() + 1).min(content.right());
-        let beside = right_of(content, left);
+        let beside = right_of(content, (matrix.right() + 1).min(content.right()));
         let (form, form_panel) = form(content, beside);
         Some(Self {
-            menu: Rect { height: 1, ..area },
+            menu: part(area.y, 1),
             body,
             title,
             content,
@@ -170,7 +144,7 @@ impl Panes {
             panel: (is_full && beside.width >= PANEL).then_some(beside),
             form,
             form_panel,
-            source: if is_full { line(foot) } else { absent },
+            source: if is_full { line(4) } else { part(area.y, 0) },
             taxel: line(if is_full { 3 } else { 2 }),
             notice: line(2),
             hints: line(1),
@@ -193,18 +167,15 @@ impl Panes {
 
 /// Square taxels come first, as large as there is room for, then smaller ones that show more of the matrix.
 fn matrix_width(content: Rect, imprint: &Imprint, halves: bool) -> u16 {
+    let cells = (imprint.columns(), imprint.rows());
     let beside = |panel: u16| Rect {
-        width: content.width.saturating_sub(1 + panel),
+        width: content.width.saturating_sub(panel),
         ..content
     };
-    let room = if content.width >= BOTH {
-        beside(PANEL)
-    } else {
-        content
-    };
-    let cells = (imprint.columns(), imprint.rows());
     let fitting = |room: Rect| CellSize::fitting(cells, beside_rulers(room), halves);
-    let size = match (fitting(room), fitting(beside(WIDE_PANEL))) {
+    let has_both = content.width >= BOTH;
+    let room = beside(if has_both { 1 + PANEL } else { 0 });
+    let size = match (fitting(room), fitting(beside(1 + WIDE_PANEL))) {
         (CellSize::Square(_), large @ CellSize::Square(_)) => large,
         (CellSize::Square(_), _) => CellSize::Square(1),
         (small, _) => small,
@@ -212,22 +183,16 @@ fn matrix_width(content: Rect, imprint: &Imprint, halves: bool) -> u16 {
     (RULER + size.columns() * u16::from(cells.0)).min(room.width)
 }
 
-fn form(body: Rect, beside: Rect) -> (Rect, Option<Rect>) {
+/// Beside the matrix, and beside the descriptors if there is room; on a narrow screen in place of both.
+fn form(content: Rect, beside: Rect) -> (Rect, Option<Rect>) {
     if beside.width < FORM {
-        let height = LOW_FORM.min(body.height);
-        let y = body.bottom() - height;
-        return (Rect { y, height, ..body }, None);
+        return (content, None);
     }
-    if beside.width > NARROW_FORM + PANEL {
-        let panel = (beside.width - 1).saturating_sub(WIDE_FORM);
-        let width = beside.width - 1 - panel.clamp(PANEL, WIDE_PANEL);
-        let panel = right_of(beside, beside.x + width + 1);
-        return (Rect { width, ..beside }, Some(panel));
+    if beside.width <= NARROW_FORM + PANEL {
+        return (beside, None);
     }
-    if beside.height > LONGEST_FORM + LOW_PANEL && beside.width >= PANEL {
-        let height = LONGEST_FORM;
-        let panel = below(beside, height + 1);
-        return (Rect { height, ..beside }, Some(panel));
-    }
-    (beside, None)
+    let panel = (beside.width - 1).saturating_sub(WIDE_FORM);
+    let width = beside.width - 1 - panel.clamp(PANEL, WIDE_PANEL);
+    let panel = right_of(beside, beside.x + width + 1);
+    (Rect { width, ..beside }, Some(panel))
 }
