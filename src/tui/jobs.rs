@@ -33,8 +33,8 @@ use crate::tui::app::change::refuse;
 use crate::tui::app::state::{App, Notice};
 use crate::tui::app::unsaved::UnsavedWork;
 use crate::tui::explore::work::SweepProgress;
+use crate::tui::live::source::Sources;
 use crate::tui::runtime::disk::files::WriteAccess;
-use crate::tui::runtime::frames::FrameWatcher;
 use crate::tui::runtime::reminders::Reminders;
 
 /// What a job leaves to do, on the thread of the screen.
@@ -134,7 +134,7 @@ pub struct Jobs {
     /// What is remembered from run to run; None if nothing is.
     pub(crate) reminders: Option<Reminders>,
     pub(crate) models: Models,
-    pub(crate) frames: FrameWatcher,
+    pub(crate) sources: Sources,
     /// The disk's thread, once something was asked of it.
     disk: Option<(Sender<DiskWork>, JoinHandle<()>)>,
     keeps_unsaved: bool,
@@ -183,7 +183,7 @@ impl Jobs {
                 folder: Some(ModelFolder::of(library.folder())),
                 cache: None,
             },
-            frames: FrameWatcher::default(),
+            sources: Sources::default(),
             disk: None,
             keeps_unsaved: false,
             library,
@@ -236,7 +236,6 @@ impl Jobs {
     #[must_use]
     pub fn with_threads(mut self, wake: Wake) -> Self {
         self.post.wake = Some(wake);
-        self.frames.post = Some(self.post.clone());
         self
     }
 
@@ -271,6 +270,11 @@ impl Jobs {
     pub fn without_reminders(mut self) -> Self {
         self.reminders = None;
         self
+    }
+
+    /// What wakes the event loop; None in scripts.
+    pub(crate) fn wake(&self) -> Option<Wake> {
+        self.post.wake.clone()
     }
 
     /// Changes something on the disk; `what` names it, as in "Saving blob". It is never dropped.

@@ -8,7 +8,7 @@ use taxel_files::formats::Name;
 use crate::tui::app::document::Document;
 use crate::tui::explore::ExploreMessage;
 use crate::tui::keys::key::{Arrow, Key};
-use crate::tui::live::message::{LiveEvent, LiveMessage};
+use crate::tui::live::message::LiveMessage;
 use crate::tui::recognise::RecogniseMessage;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -159,10 +159,4 @@ pub enum LibraryRequest {
     Save(Name),
     Named(Purpose, String),
     Restore(Option<String>),
-}
-
-/// An event of a source of frames, with its number.
-#[derive(Clone, Debug, PartialEq)]
-pub enum WorkerEvent {
-    Live(u64, LiveEvent),
 }

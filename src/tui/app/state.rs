@@ -29,7 +29,6 @@ use crate::tui::live::state::Live;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::matrix::view::grid;
 use crate::tui::recognise::page::Recognition;
-use crate::tui::runtime::effect::TerminalEffect;
 use crate::tui::widget::theme::Theme;
 
 #[derive(Clone, Copy, Debug)]
@@ -89,6 +88,14 @@ pub enum NarrowPane {
 }
 
 pub(crate) const STEPS: [f64; 3] = [0.01, 0.1, 1.0];
+
+/// What the terminal is to do after a message.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TerminalEffect {
+    Redraw,
+    Suspend,
+    Copy(String),
+}
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunState {

@@ -4,18 +4,17 @@
 //! user.
 
 use crate::tui::app::change::{from_prompt, give_prompt, inform, refuse};
-use crate::tui::app::message::{Message, WorkerEvent};
+use crate::tui::app::message::Message;
 use crate::tui::app::mouse;
 use crate::tui::app::page::{Flow, Page};
-use crate::tui::app::state::{App, Notice, RunState};
+use crate::tui::app::state::{App, Notice, RunState, TerminalEffect};
 use crate::tui::explain::Explain;
 use crate::tui::help::Help;
 use crate::tui::jobs::Answer;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::Context;
-use crate::tui::runtime::effect::TerminalEffect;
-use crate::tui::runtime::{self, reminders};
+use crate::tui::runtime::reminders;
 use crate::tui::{explore, live, matrix, recognise};
 
 /// The length, in bytes, from which nothing is added to a failure that nobody has read.
@@ -25,12 +24,11 @@ const MOST_SAID: usize = 300;
 pub fn update(app: &mut App, message: Message) -> Option<TerminalEffect> {
     changing(app, |app| handle(app, message));
     loop {
+        live::update::write_changes(app);
         recognise::page::follow(app);
         app.jobs.settle(app.pages.len());
         if let Some(answer) = app.jobs.next_answer(app.pages.len()) {
             changing(app, |app| on_answer(app, answer));
-        } else if let Some(effect) = live::update::next_work(app) {
-            changing(app, |app| runtime::perform(app, Some(effect)));
         } else {
             break;
         }
@@ -175,12 +173,6 @@ fn unknown(app: &mut App, key: Key) {
         format!("{} lists the keys", label(&action::HELP))
     };
     refuse(app, format!("{} does nothing here; {instead}", key.label()));
-}
-
-/// Handles an event of work that is no closure yet.
-pub fn on_worker(app: &mut App, event: WorkerEvent) {
-    let WorkerEvent::Live(number, event) = event;
-    live::update::on_worker(app, number, &event);
 }
 
 #[cfg(test)]

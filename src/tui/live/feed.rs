@@ -33,13 +33,6 @@ pub struct FrameBatch {
     pub status: FeedStatus,
 }
 
-impl PartialEq for FrameBatch {
-    /// A batch never changes.
-    fn eq(&self, other: &Self) -> bool {
-        std::ptr::eq(self, other)
-    }
-}
-
 #[derive(Clone, Debug, Default)]
 pub struct FeedStatus {
     pub state: SourceState,

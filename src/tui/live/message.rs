@@ -45,19 +45,6 @@ pub enum LiveMessage {
     NameShape,
 }
 
-#[derive(Clone, Debug, PartialEq)]
-pub enum LiveEvent {
-    Waiting,
-    /// Everything that has come since the last time.
-    Arrived(Arc<FrameBatch>),
-    Recording(String),
-    /// The recording has ended; the file, and the frames in it and not in it.
-    Recorded(String, RecordedFrames),
-    /// The reason why the recording cannot be begun.
-    NotRecorded(String),
-    NotFinished(String),
-}
-
 /// What follows `:watch`: a source, whose name may contain spaces, then flags as on the command line:
 /// `grip 2.csv --rows 4 --columns 5 --at-least 10`.
 #[derive(Clone, Debug, Default, clap::Args)]

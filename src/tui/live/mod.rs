@@ -1,7 +1,8 @@
 //! The live page: the frames of a sensor, live or played back, as a heat map with a description.
 //!
 //! ```text
-//! message          requests by keys and commands, and reports from the source
+//! message          requests by keys and commands
+//! source           the thread that reads a source, and the recording
 //! feed             the frames of the source that the page has not taken yet
 //! history          the most recent frames, as many as fit into a given amount of memory
 //! reading          values, imprint and descriptors of one frame
@@ -15,6 +16,8 @@
 //! ```
 
 pub mod message;
+
+pub mod source;
 
 pub mod feed;
 

@@ -1,15 +1,13 @@
 //! How the live page handles messages. The source keeps running while the imprint is on the matrix, and ends when the
 //! page is closed.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use taxel_core::frame::{FrameSize, Rule};
 use taxel_files::acquire::FrameSource;
 use taxel_files::formats::Name;
 use taxel_files::formats::recording::{ChannelInfo, RecordingMetadata};
-use taxel_files::formats::value::{counted, grouped};
-use taxel_files::storage::Existing;
+use taxel_files::formats::value::counted;
 
 use crate::tui::app::change::{begin, inform, refuse};
 use crate::tui::app::document::Document;
@@ -22,30 +20,24 @@ use crate::tui::jobs::answer;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Context;
-use crate::tui::live::message::{
-    LiveEvent, LiveMessage, NamedSource, RecordedFrames, WatchRequest,
-};
+use crate::tui::live::feed::FrameBatch;
+use crate::tui::live::message::{LiveMessage, NamedSource, WatchRequest};
 use crate::tui::live::reading::{self, HeatLayer};
 use crate::tui::live::state::{Live, NO_FRAME, READ_ONCE};
-use crate::tui::live::{names, threshold, view};
+use crate::tui::live::{names, source, threshold, view};
 use crate::tui::prompt::CommandDialog;
 use crate::tui::runtime::disk::files;
-use crate::tui::runtime::effect::{Effect, FrameWork};
-use crate::tui::runtime::perform;
 
 /// Handles a request over the matrix. Requests about the open page, such as a tare, do nothing here, because no page
 /// is open.
-pub fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> {
+pub fn act(app: &mut App, asked: &LiveMessage) {
     match asked {
-        LiveMessage::Watch(request) => Some(watch(app, request)),
+        LiveMessage::Watch(request) => watch(app, request),
         LiveMessage::Source(source) => check_source(app, source),
         LiveMessage::Open => open(app),
-        LiveMessage::AtLeast(rule) => {
-            set_threshold(app, *rule);
-            None
-        }
+        LiveMessage::AtLeast(rule) => set_threshold(app, *rule),
         LiveMessage::Size(size) => watch_with(app, *size),
-        _ => None,
+        _ => {}
     }
 }
 
@@ -60,7 +52,7 @@ fn set_threshold(app: &mut App, rule: Rule) {
 }
 
 /// Watches the source of the page from its start, with this size of a frame, and with the threshold of the page.
-fn watch_with(app: &mut App, size: FrameSize) -> Option<Effect> {
+fn watch_with(app: &mut App, size: FrameSize) {
     let reason = match page(app) {
         None => NO_SOURCE,
         Some(page) if page.request.source == FrameSource::Standard => READ_ONCE,
@@ -68,11 +60,10 @@ fn watch_with(app: &mut App, size: FrameSize) -> Option<Effect> {
             let mut request = WatchRequest::clone(&page.request);
             request.options.size = Some(size);
             request.pipeline.processing.apply_rule(page.rule());
-            return Some(watch(app, &Arc::new(request)));
+            return watch(app, &Arc::new(request));
         }
     };
     refuse(app, reason);
-    None
 }
 
 /// Handles a message over the page. Esc goes back to the source from a frozen frame; otherwise it leaves the page, and
@@ -85,7 +76,7 @@ pub fn in_live(page: &mut Live, app: &mut App, message: &Message) -> Flow {
         }
         Message::Cancel | Message::Quit => {
             page.stop();
-            perform(app, Some(Effect::Frames(FrameWork::StopWatching)));
+            source::stop(app);
             return Flow::Close;
         }
         Message::Accept => match reading::document(page) {
@@ -102,10 +93,7 @@ pub fn in_live(page: &mut Live, app: &mut App, message: &Message) -> Flow {
         Message::ScrollTo(Endpoint::First) => drop(page.stay_at(0)),
         Message::ScrollTo(Endpoint::Last) => page.follow(),
         Message::SwitchPane => page.only_panel ^= true,
-        Message::Live(asked) => {
-            let effect = adjust(app, page, asked);
-            perform(app, effect);
-        }
+        Message::Live(asked) => adjust(app, page, asked),
         Message::Command => return Flow::push(CommandDialog::over(Context::Live, app)),
         _ => {}
     }
@@ -125,7 +113,7 @@ fn say_if_not(app: &mut App, found: bool, page: &Live, by: i64, what: &str) {
 }
 
 /// Changes how frames are shown, or begins and ends a recording.
-fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect> {
+fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) {
     match asked {
         LiveMessage::Tare => match page.tare_now() {
             Ok(frames) => inform(app, tare_of(page, frames)),
@@ -162,22 +150,21 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
             page.looked_at = None;
             inform(app, "the view follows the contact");
         }
-        LiveMessage::Record => return record(app, page),
+        LiveMessage::Record => record(app, page),
         LiveMessage::Mark => match page.mark() {
             Some((number, true)) => inform(app, format!("frame {number}: marked")),
             Some((number, false)) => inform(app, format!("frame {number}: mark removed")),
             None => refuse(app, NO_FRAME),
         },
         LiveMessage::NameShape => names::name_by_next(app),
-        LiveMessage::Again => return watch_again(app, page),
-        LiveMessage::Source(source) => return check_source(app, source),
+        LiveMessage::Again => watch_again(app, page),
+        LiveMessage::Source(source) => check_source(app, source),
         // These are typed after `:`, and reach the page from there.
         LiveMessage::Open
         | LiveMessage::Watch(_)
         | LiveMessage::AtLeast(_)
         | LiveMessage::Size(_) => {}
     }
-    None
 }
 
 /// Returns the notice about a tare that was made just now of this number of frames. If the page stays at a frame, these
@@ -247,24 +234,23 @@ fn refuse_imprint(app: &mut App, page: &Live) {
     refuse(app, text);
 }
 
-/// Returns the next work of the page: new metadata of the recording, if threshold, tare or marks have changed since it
-/// was written last.
-pub fn next_work(app: &mut App) -> Option<Effect> {
-    let page = page(app).filter(|page| !page.stopped)?;
-    let view = page.take_changed_view()?;
-    Some(Effect::Frames(FrameWork::WriteMetadata(Box::new(view))))
+/// Writes threshold, tare and marks beside the recording if they have changed since they were written last.
+pub fn write_changes(app: &mut App) {
+    let page = page(app).filter(|page| !page.stopped);
+    if let Some(view) = page.and_then(Live::take_changed_view) {
+        source::write_view(app, view);
+    }
 }
 
 /// Begins a recording, or ends it. The frames are written as they come, without view, tare or threshold; the
 /// metadata of the recording says how they were looked at last.
-fn record(app: &mut App, page: &mut Live) -> Option<Effect> {
+fn record(app: &mut App, page: &mut Live) {
     if page.recording.name.is_some() {
         page.begin_recording(None);
-        return Some(Effect::Frames(FrameWork::StopRecording));
+        return source::end_recording(app);
     }
     if page.status.state.is_final() {
-        refuse(app, "the source has ended, so there is nothing to record");
-        return None;
+        return refuse(app, "the source has ended, so there is nothing to record");
     }
     page.recording.from = page.history.numbers().end;
     let channel = page.status.channel.as_deref();
@@ -277,49 +263,38 @@ fn record(app: &mut App, page: &mut Live) -> Option<Effect> {
         seconds_per_frame: channel.and_then(|channel| channel.seconds_per_frame),
         ..RecordingMetadata::default()
     };
-    Some(Effect::Frames(FrameWork::Record(Box::new(metadata))))
+    source::record(app, metadata);
 }
 
 fn watched(app: &mut App, number: u64) -> Option<&mut Live> {
     page(app).filter(|page| page.number == number && !page.stopped)
 }
 
-/// Handles a report of the source. Reports of a source that is no longer watched are dropped, by their number; except
-/// reports of a finished recording, because a recording is finished after its source is left.
-pub fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
-    match event {
-        LiveEvent::Recorded(name, RecordedFrames { frames: 0, .. }) => {
-            return inform(
-                app,
-                format!("{name}: no frame came, so nothing was written"),
-            );
+/// Takes what has come from the source of that number.
+pub(crate) fn arrived(app: &mut App, number: u64, batch: &FrameBatch) {
+    report(app, number, |page| page.take(batch));
+}
+
+/// Notes the file in which frames are recorded from now on, or why they are not.
+pub fn begun_in(app: &mut App, number: u64, file: Result<String, String>) {
+    match file {
+        Ok(name) => {
+            inform(app, format!("recording in {name}"));
+            report(app, number, |page| page.begin_recording(Some(name)));
         }
-        LiveEvent::Recorded(name, RecordedFrames { frames, left_out }) => {
-            let frames = counted(*frames, "frame");
-            let mut text = format!("{name}: {frames} recorded");
-            if *left_out > 0 {
-                text += &format!(", {} of another size left out", grouped(*left_out));
-            }
-            return inform(app, text);
-        }
-        LiveEvent::NotFinished(reason) => return refuse(app, reason.clone()),
-        _ => {}
+        Err(reason) => report(app, number, |page| page.fail_recording(reason)),
     }
-    let is_open = app.top_mut::<Live>().is_some();
+}
+
+/// Changes the page by a report of its source; one of a source that is no longer watched is dropped.
+fn report(app: &mut App, number: u64, change: impl FnOnce(&mut Live)) {
+    let is_open = app.pages.last().is_some_and(|page| page.is::<Live>());
     let Some(page) = watched(app, number) else {
         return;
     };
     let wrong = |page: &Live| (page.trouble(), page.error().cloned());
     let (before, refused) = (wrong(page), page.recording.refusal.clone());
-    match event {
-        LiveEvent::Waiting | LiveEvent::Recorded(..) | LiveEvent::NotFinished(_) => {}
-        LiveEvent::Arrived(batch) => page.take(batch),
-        LiveEvent::Recording(name) => {
-            page.begin_recording(Some(name.clone()));
-            return inform(app, format!("recording in {name}"));
-        }
-        LiveEvent::NotRecorded(reason) => page.fail_recording(reason.clone()),
-    }
+    change(page);
     let (now, refusal) = (wrong(page), page.recording.refusal.clone());
     if is_open && now != before && now != (None, None) {
         // The page shows the trouble; an old notice, such as that of the beginning of a recording, is no longer true.
@@ -358,13 +333,12 @@ pub fn set_aside(app: &mut App) {
 }
 
 /// Requests a check of a source; it is watched if it can be read.
-pub fn check_source(app: &mut App, source: &NamedSource) -> Option<Effect> {
+fn check_source(app: &mut App, source: &NamedSource) {
     let named = source.source();
     // A second page would have no bytes to read, and the first one and its history would be gone.
     if named == FrameSource::Standard && page(app).is_some_and(|page| page.request.source == named)
     {
-        refuse(app, READ_ONCE);
-        return None;
+        return refuse(app, READ_ONCE);
     }
     let (models, access) = (app.jobs.models.clone(), Arc::clone(&app.jobs.access));
     let (source, settings) = (source.clone(), app.watch_settings.clone());
@@ -373,29 +347,21 @@ pub fn check_source(app: &mut App, source: &NamedSource) -> Option<Effect> {
             let found = source.request(&settings);
             let found = found.and_then(|own| files::watchable(Arc::new(own), &models, &access));
             answer(|app| match found {
-                Ok(request) => {
-                    let effect = watch(app, &request);
-                    perform(app, Some(effect));
-                }
+                Ok(request) => watch(app, &request),
                 Err(refused) => refuse(app, refused),
             })
         });
-    None
 }
 
 /// Opens a page for a source, in place of the one before. Late reports of the source before have its own number, and
 /// are dropped.
-pub fn watch(app: &mut App, request: &Arc<WatchRequest>) -> Effect {
+fn watch(app: &mut App, request: &Arc<WatchRequest>) {
     app.works += 1;
     let mut page = Live::new(Arc::clone(request), app.works);
-    page.begin_recording(
-        request
-            .write
-            .as_ref()
-            .map(|(path, _)| path.to_string_lossy().into_owned()),
-    );
     let write = request.write.clone();
-    let watched = watch_source(&page, write);
+    let path = write.as_ref().map(|(path, _)| path.to_string_lossy());
+    page.begin_recording(path.map(Into::into));
+    source::watch(app, page.number, Arc::clone(request), write);
     // It has led to this page, and is not opened again by what is refused here.
     app.prompt = None;
     app.live = None;
@@ -403,46 +369,34 @@ pub fn watch(app: &mut App, request: &Arc<WatchRequest>) -> Effect {
     let model = page.names.choice.clone();
     app.open(page);
     names::name_by(app, model);
-    watched
-}
-
-fn watch_source(page: &Live, write: Option<(PathBuf, Existing)>) -> Effect {
-    Effect::Frames(FrameWork::Watch {
-        number: page.number,
-        request: Arc::clone(&page.request),
-        write,
-    })
 }
 
 /// Opens the page of the last source as it was left. If the source can go on, its frames are watched again; those that
 /// came meanwhile are lost. A finished recording is played again only when asked for.
-pub fn open(app: &mut App) -> Option<Effect> {
-    if app.page::<Live>().is_some() {
-        refuse(app, OPEN_ALREADY);
-        return None;
+fn open(app: &mut App) {
+    if app.pages.iter().any(|page| page.is::<Live>()) {
+        return refuse(app, OPEN_ALREADY);
     }
     let Some(mut page) = app.live.take() else {
-        refuse(app, NO_SOURCE);
-        return None;
+        return refuse(app, NO_SOURCE);
     };
-    let mut effect = None;
     if std::mem::take(&mut page.stopped) && !page.status.state.is_final() {
-        app.works += 1;
-        page.restart(app.works);
-        effect = Some(watch_source(&page, None));
+        restart(app, &mut page);
     }
     app.pages.push(page);
-    effect
 }
 
-pub fn watch_again(app: &mut App, page: &mut Live) -> Option<Effect> {
-    if let Err(refused) = page.check_again() {
-        refuse(app, refused);
-        return None;
+fn watch_again(app: &mut App, page: &mut Live) {
+    match page.check_again() {
+        Ok(()) => restart(app, page),
+        Err(refused) => refuse(app, refused),
     }
+}
+
+fn restart(app: &mut App, page: &mut Live) {
     app.works += 1;
     page.restart(app.works);
-    Some(watch_source(page, None))
+    source::watch(app, page.number, Arc::clone(&page.request), None);
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ use crate::tui::app::change::{
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{DocumentOrigin, History};
 use crate::tui::app::message::{Copied, Endpoint, Layer, Message, Purpose};
-use crate::tui::app::state::{App, Display, Followed, NarrowPane, RunState, STEPS};
+use crate::tui::app::state::{App, Display, Followed, NarrowPane, RunState, STEPS, TerminalEffect};
 use crate::tui::app::unsaved::quit;
 use crate::tui::explain::Explain;
 use crate::tui::explore::ExploreMessage;
@@ -34,8 +34,6 @@ use crate::tui::keys::keymap::Context;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::prompt::{CommandDialog, NameDialog};
 use crate::tui::runtime::disk::files;
-use crate::tui::runtime::effect::TerminalEffect;
-use crate::tui::runtime::perform;
 use crate::tui::shapes::list::open_list;
 use crate::tui::widget::write::around;
 use crate::tui::{explore, live, recognise, shapes};
@@ -55,10 +53,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) {
         Message::QuitNow => app.run_state = RunState::Quit,
         Message::Copy(what) => copy(app, what),
         Message::Explore(asked) => explore::work::act(app, asked),
-        Message::Live(asked) => {
-            let effect = live::update::act(app, &asked);
-            perform(app, effect);
-        }
+        Message::Live(asked) => live::update::act(app, &asked),
         Message::Recognise(asked) => recognise::page::act(app, asked),
         Message::Request(request) => shapes::library::act(app, request),
         Message::Compare => compare_with_before(app),

@@ -22,14 +22,14 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::{Color, Modifier};
 use taxel_files::formats::value::escaped;
 
-use crate::tui::app::message::{Message, WorkerEvent};
+use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Notice, Options};
 use crate::tui::app::unsaved::offer;
-use crate::tui::app::update::{on_worker, update};
+use crate::tui::app::update::update;
 use crate::tui::app::view::draw;
 use crate::tui::keys::key::{Key, KeyError, parse};
-use crate::tui::live::message::{LiveEvent, LiveMessage, NamedSource, SourceState};
-use crate::tui::live::update::last_page;
+use crate::tui::live::message::{LiveMessage, NamedSource, SourceState};
+use crate::tui::live::update::{arrived, last_page};
 use crate::tui::runtime::World;
 use crate::tui::runtime::reminders::remind;
 use crate::tui::widget::theme::{Palette, Theme, letter};
@@ -123,11 +123,10 @@ impl Session {
     pub fn frames(&mut self, count: usize) -> usize {
         let mut frames = 0;
         let access = Arc::clone(&self.app.jobs.access);
-        for event in self.app.jobs.frames.next(count, &access) {
-            if let WorkerEvent::Live(_, LiveEvent::Arrived(batch)) = &event {
-                frames += batch.frames.len();
-            }
-            self.answer(move |app| on_worker(app, event));
+        let (number, batches) = self.app.jobs.sources.next(count, &access);
+        for batch in batches {
+            frames += batch.frames.len();
+            self.answer(move |app| arrived(app, number, &batch));
         }
         frames
     }

@@ -15,13 +15,13 @@ use signal_hook::consts::{SIGCONT, SIGHUP, SIGTSTP};
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::Message;
-use crate::tui::app::state::App;
+use crate::tui::app::state::{App, TerminalEffect};
 use crate::tui::app::unsaved::offer;
-use crate::tui::app::update::{on_worker, update};
+use crate::tui::app::update::update;
 use crate::tui::app::view::draw;
 use crate::tui::keys::action;
+use crate::tui::live::source;
 use crate::tui::live::update::last_page;
-use crate::tui::runtime::effect::TerminalEffect;
 use crate::tui::runtime::reminders::remind;
 use crate::tui::runtime::{World, end, flush};
 use crate::tui::terminal::input::{self, Input};
@@ -203,7 +203,7 @@ impl EventLoop<'_> {
     /// come meanwhile are taken together.
     fn take_frames(&mut self) {
         self.frames_due = None;
-        if !self.app.jobs.frames.has_new() || self.is_writing {
+        if !self.app.jobs.sources.has_new() || self.is_writing {
             return;
         }
         let now = Instant::now();
@@ -213,10 +213,8 @@ impl EventLoop<'_> {
             return;
         }
         self.frames_at = Some(now);
-        if let Some(frames) = self.app.jobs.frames.take() {
-            self.app.jobs.later(move |app| on_worker(app, frames));
-            self.update(Message::Answered);
-        }
+        self.app.jobs.later(source::take);
+        self.update(Message::Answered);
     }
 
     fn update(&mut self, message: Message) {

@@ -14,7 +14,7 @@ use taxel_files::formats::{Content, imprint_file, read_content};
 use taxel_files::storage::{self, Existing, ModelChoice, Models, below_home};
 
 use crate::tui::live::message::WatchRequest;
-use crate::tui::runtime::frames;
+use crate::tui::live::source;
 
 /// The largest size of a file that is opened, in bytes. One byte more is read at most, and the file is refused then.
 const MOST: u64 = imprint_file::MAX_BYTES as u64;
@@ -26,7 +26,7 @@ pub(crate) fn watchable(
     models: &Models,
     access: &WriteAccess,
 ) -> Result<Arc<WatchRequest>, String> {
-    let source = frames::readable(&request.source, access)?;
+    let source = source::readable(&request.source, access)?;
     refuse_baud(&source, &request)?;
     refuse_imprint(&source, &request)?;
     if let Some(choice) = request.model.clone().filter(ModelChoice::is_read) {
