@@ -3,9 +3,10 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, CommandFactory, Parser, Subcommand};
+use taxel_core::figure::FigureKind;
 
 use crate::cli::Context;
 use crate::cli::commands::batch::Batch;
@@ -123,29 +124,32 @@ impl Subcommands {
 
 /// The program with all its commands. Completions and manual pages are made from this too.
 pub(super) fn definition() -> Command {
-    with_negative_numbers(Program::command().term_width(80))
+    strict(Program::command().term_width(80))
 }
 
-/// Lets every argument take `-1`, so that the argument's own parser tells what it expects. Otherwise clap would take
-/// `-1` for a flag and advise `-- -1`, which no flag accepts.
-fn with_negative_numbers(command: Command) -> Command {
+/// Lets every argument take `-1`, so that the argument's own parser tells what it expects; otherwise clap would take
+/// `-1` for a flag and advise `-- -1`, which no flag accepts. A subcommand that is missing is an error, not the help.
+fn strict(command: Command) -> Command {
     command
+        .arg_required_else_help(false)
         .mut_args(|arg| {
             let takes = arg.get_action().takes_values();
             arg.allow_negative_numbers(takes)
         })
-        .mut_subcommands(with_negative_numbers)
+        .mut_subcommands(strict)
 }
 
 /// What clap makes of the arguments; the error is the help if it is asked for.
-pub(super) fn read(arguments: Vec<OsString>) -> Result<ArgMatches, clap::Error> {
+pub(super) fn read(arguments: Vec<OsString>) -> Result<ArgMatches, Error> {
     let has = |flag: &str| arguments.iter().any(|argument| argument == flag);
     let mut program = definition();
     if has("-h") && !has("--help") {
         program = without_notes(program);
     }
     let mut program = grouped(program);
-    let matches = program.try_get_matches_from_mut(arguments)?;
+    let matches = program
+        .try_get_matches_from_mut(arguments)
+        .map_err(with_tip)?;
     let Some((name, own)) = matches.subcommand() else {
         return Ok(matches);
     };
@@ -169,6 +173,18 @@ pub(super) fn read(arguments: Vec<OsString>) -> Result<ArgMatches, clap::Error> 
         return Err(program.error(ErrorKind::ArgumentConflict, message));
     }
     Ok(matches)
+}
+
+/// Adds what figure a word such as `circle` may mean.
+fn with_tip(mut error: Error) -> Error {
+    if let Some(ContextValue::String(given)) = error.get(ContextKind::InvalidValue)
+        && let Some(tip) = FigureKind::of_other_name(given)
+    {
+        error.remove(ContextKind::SuggestedValue);
+        let tips = ContextValue::StyledStrs(vec![tip.into()]);
+        error.insert(ContextKind::Suggested, tips);
+    }
+    error
 }
 
 /// Leaves out the texts below the flags: `-h` prints usage and flags only.
@@ -217,8 +233,8 @@ fn grouped(mut program: Command) -> Command {
 #[cfg(test)]
 mod tests {
     use clap::builder::NonEmptyStringValueParser;
-    use clap::error::{ContextKind, ContextValue, ErrorKind};
-    use clap::{Arg, Command, Error};
+    use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
+    use clap::{Arg, Command};
 
     use super::GROUPS;
 

@@ -278,6 +278,12 @@ impl TryFrom<BTreeMap<Place, BTreeMap<BoundKey, Act>>> for Keys {
                 }));
             }
         }
+        // What holds anyway is no change, as in the output of 'taxel config'.
+        let usual = Keymap::default();
+        changes.retain(|change| {
+            let mut keys = usual.of(change.context).flat_map(|row| row.keys.iter());
+            !keys.any(|(key, action)| *key == change.key && Some(*action) == change.action)
+        });
         let keymap = Keymap::with(&changes).map_err(|(_, error)| error.to_string())?;
         Ok(Self { changes, keymap })
     }

@@ -17,27 +17,6 @@ fn frames(name: &str, flags: &str) -> Run {
     taxel(&format!("frames {} {flags}", sample(name)), "")
 }
 
-#[test]
-fn a_recording_instead_of_a_command_gives_tips() {
-    let touch = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scripts/touch.csv");
-    let tips = format!(
-        "unrecognized subcommand '{touch}'\n\n  \
-         tip: taxel frames {touch} lists what is in it\n  \
-         tip: taxel watch {touch} plays it\n\nUsage: "
-    );
-    misused(touch, &tips);
-    // A file that does not exist, and a file of another kind.
-    misused(
-        "touch.csv",
-        "unrecognized subcommand 'touch.csv'\n\nUsage: ",
-    );
-    let script = touch.replace("touch.csv", "live.taxel");
-    misused(
-        &script,
-        &format!("unrecognized subcommand '{script}'\n\nUsage: "),
-    );
-}
-
 fn answers(run: &Run) -> Vec<Value> {
     let lines = run.stdout.lines();
     lines
@@ -696,12 +675,6 @@ fn a_listing_accepts_no_threshold_and_no_tare() {
             "the following required arguments were not provided:",
         );
     }
-    let run = taxel(
-        &format!("frames {} --at-least 10", sample("tekscan.asf")),
-        "",
-    );
-    let tip = "\n  tip: to describe frames, choose some, such as '--peak' or '--all'\n";
-    assert!(run.stderr.contains(tip), "{}", run.stderr);
 }
 
 #[test]
@@ -821,23 +794,6 @@ fn a_mask_and_a_gain_may_come_from_standard_input() {
         "{}",
         run.stderr
     );
-    let both = |one: &str, other: &str| {
-        format!(
-            "'{one}' and '{other}' both stand for standard input, which can be read only once\n"
-        )
-    };
-    misused(
-        &format!("{line} --mask - --gain -"),
-        &both("--mask -", "--gain -"),
-    );
-    for command in ["frames", "watch"] {
-        let line = format!("{command} - --all --at-least 3 --gain -");
-        let line = match command {
-            "watch" => line.replace("--all ", ""),
-            _ => line,
-        };
-        misused(&line, &both("-", "--gain -"));
-    }
 }
 
 #[test]

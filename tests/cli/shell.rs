@@ -8,7 +8,6 @@ use std::sync::LazyLock;
 use super::commands::commands;
 use super::misused;
 use super::program;
-use super::refused;
 use super::skip::lacking;
 use super::taxel;
 
@@ -80,6 +79,8 @@ fn furnished(folder: &Path) {
     write("parts.jsonl", super::model::PARTS);
     write("rows.txt", include_str!("../files/frames/samples/rows.txt"));
     write("test.taxel", "Keys f<Enter>\nExpect /ellipse/\n");
+    fs::create_dir(folder.join("tests")).expect("made");
+    write("tests/a.taxel", "Keys f<Enter>\n");
     for folder_of in [
         "shapes",
         ".zfunc",
@@ -227,27 +228,14 @@ fn every_command_has_a_man_page() {
     );
     let first = fs::read_to_string(pages.join("taxel.1")).expect("a page");
     assert_eq!(taxel("man", "").stdout, first);
-    let page = pages.join("taxel.1").display().to_string();
-    let run = taxel(&format!("man {page}"), "");
-    let file = format!("{page}: cannot write: a file, expected a folder");
-    refused(&run, 1, &file);
     let groff = has("groff");
-    for command in COMMANDS.iter() {
+    for command in COMMANDS.iter().filter(|_| groff) {
         let name = format!("taxel {command}").trim().replace(' ', "-");
-        let file = pages.join(format!("{name}.1"));
-        let page = fs::read_to_string(&file).expect("a page");
-        assert!(page.contains("\n.SH SYNOPSIS\n"), "{page}");
-        if groff {
-            let mut groff = Command::new("groff");
-            let output = groff.args(["-man", "-Tutf8"]).arg(&file).output();
-            let output = output.expect("it runs");
-            assert!(output.status.success(), "{output:?}");
-        }
+        let mut groff = Command::new("groff");
+        let page = pages.join(format!("{name}.1"));
+        let output = groff.args(["-man", "-Tutf8"]).arg(page).output();
+        assert!(output.expect("it runs").status.success(), "{command}");
     }
     let number = fs::read_dir(&pages).expect("a folder").count();
-    assert_eq!(
-        number,
-        COMMANDS.len(),
-        "the helps list each command that has a page"
-    );
+    assert_eq!(number, COMMANDS.len(), "each command has a page");
 }
