@@ -87,6 +87,8 @@ pub(super) enum Subcommands {
     Batch(Batch),
     Sweep(Box<Sweep>),
     Merge(Merge),
+    /// Train models, and measure how well one touch tells shapes apart
+    #[command(subcommand)]
     Model(ModelCommand),
     #[command(alias = "recognize")]
     Recognise(Recognise),

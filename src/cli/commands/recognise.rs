@@ -15,9 +15,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::index::wide;
 use taxel_core::progress::ToTheEnd;
 use taxel_core::quote::did_you_mean;
-use taxel_core::recognition::{
-    Answer, AnswerState, Evidence, Model, NamedShape, Noise, NoiseError,
-};
+use taxel_core::recognition::{Answer, AnswerState, Evidence, Model, Noise, NoiseError};
 use taxel_core::sensor::Sensor;
 use taxel_files::ReadError;
 use taxel_files::formats::file::without_mark;
@@ -64,25 +62,16 @@ Examples:
 
 /// Name the shape that left an imprint
 #[derive(Debug, clap::Args)]
-#[command(
-    after_help = EXAMPLES,
-    mut_arg("pitch_mm", |pitch| pitch.requires("pose")),
-)]
+#[command(after_help = EXAMPLES, mut_arg("pitch_mm", |pitch| pitch.requires("pose")))]
 pub(crate) struct Recognise {
     /// Imprint: shape of the library, or file; '-' for standard input
     #[arg(value_name = "NAME|FILE", value_parser = name_or_path())]
     what: OsString,
     /// Name or file of a model; built in are figures (default), figures-30 and shapes
-    #[arg(
-        long,
-        value_name = "MODEL",
-        value_parser = name_or_path(),
-        default_value = model::DEFAULT,
-        hide_default_value = true
-    )]
-    model: OsString,
+    #[arg(long, value_name = "MODEL", value_parser = name_or_path())]
+    model: Option<OsString>,
     /// Show only the K likeliest shapes
-    #[arg(long, value_name = "K", value_parser = whole::<u32>(1..))]
+    #[arg(long, value_name = "K", value_parser = whole(1_u32..))]
     top: Option<u32>,
     /// Reject answers less probable than P (0 to 1)
     #[arg(long, value_name = "P", value_parser = parse_probability)]
@@ -91,7 +80,7 @@ pub(crate) struct Recognise {
     #[arg(long, value_name = "NAME")]
     expect: Option<String>,
     /// Each taxel flips with this probability (below 0.5)
-    #[arg(long, value_name = "E", value_parser = parse_noise)]
+    #[arg(long, value_name = "E", value_parser = noise)]
     noise: Option<Noise>,
     /// Imprint whose active taxels are dead, stuck on or off; needs --noise
     #[arg(long, value_name = "NAME|FILE", value_parser = name_or_path(), requires = "noise")]
@@ -102,7 +91,7 @@ pub(crate) struct Recognise {
     #[command(flatten)]
     pitch: PitchFlag,
     /// Threads; default all cores
-    #[arg(long, value_name = "N", value_parser = whole::<u16>(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = whole(1_u16..=1024))]
     jobs: Option<u16>,
     /// Print JSON, one line per answer
     #[arg(long)]
@@ -117,7 +106,7 @@ pub(crate) struct NamingFlags {
     #[arg(long, value_name = "MODEL", value_parser = name_or_path())]
     pub(crate) model: Option<OsString>,
     /// Each taxel flips with this probability (below 0.5)
-    #[arg(long, value_name = "E", value_parser = parse_noise, requires = "model")]
+    #[arg(long, value_name = "E", value_parser = noise, requires = "model")]
     pub(crate) noise: Option<Noise>,
 }
 
@@ -132,73 +121,124 @@ impl NamingFlags {
         let Some(model) = &self.model else {
             return Ok(None);
         };
-        let noise = self
-            .noise
-            .map(|noise| mask.map_or(noise, |mask| noise.with_dead(*mask)));
-        let model = model::find(model, shelf)?;
-        Ok(Some(FoundNamer { model, noise }))
+        let with_mask = |noise: Noise| mask.map_or(noise, |mask| noise.with_dead(*mask));
+        let found = model::find(model, shelf)?;
+        Ok(Some(FoundNamer(found, self.noise.map(with_mask))))
     }
 }
 
-fn parse_noise(text: &str) -> Result<Noise, String> {
-    let number = parse_number(text)?;
-    Noise::new(number).map_err(|error: NoiseError| error.expected().to_owned())
+fn noise(text: &str) -> Result<Noise, String> {
+    let noise = Noise::new(parse_number(text)?);
+    noise.map_err(|error: NoiseError| error.expected().to_owned())
 }
 
 /// A [`Namer`] whose model may have to be trained.
 #[derive(Debug)]
-pub(crate) struct FoundNamer {
-    model: FoundModel,
-    noise: Option<Noise>,
-}
+pub(crate) struct FoundNamer(FoundModel, Option<Noise>);
 
 impl FoundNamer {
     /// Trains a built-in model that is not in the cache; this may take some seconds.
     pub(crate) fn ready(self, quiet: bool, charset: Charset) -> Result<Namer, Failure> {
-        let model = model::ready(self.model, quiet, charset)?;
-        let noise = self.noise;
-        Ok(Namer { model, noise })
+        Ok(Namer {
+            model: model::ready(self.0, quiet, charset)?,
+            noise: self.1,
+            reject: None,
+            top: None,
+            pose: None,
+        })
     }
 }
 
-/// Names the shapes that left imprints, which may have noise.
+/// Names the shapes that left imprints.
 #[derive(Debug)]
 pub(crate) struct Namer {
     model: Model,
     noise: Option<Noise>,
+    /// The probability below which an answer is rejected.
+    reject: Option<f64>,
+    /// The number of shapes of the ranking that are shown; None for eight in words and all in JSON.
+    top: Option<usize>,
+    /// Whether the pose is told, with the pitch in mm, if that is known.
+    pose: Option<Option<f64>>,
 }
 
 impl Namer {
     fn evidence<'a>(&'a self, touches: &'a [Imprint]) -> Evidence<'a> {
-        Evidence::of(touches).under(self.noise.as_ref())
+        let mut evidence = Evidence::of(touches).under(self.noise.as_ref());
+        evidence.reject_below = self.reject;
+        evidence
     }
 
-    fn json<'a>(&'a self, touches: &[Imprint], answer: &'a Answer) -> AnswerJson<'a> {
+    fn answer(&self, touches: &[Imprint]) -> Answer {
+        self.model.recognise(self.evidence(touches))
+    }
+
+    fn json<'a>(
+        &'a self,
+        touches: &[Imprint],
+        answer: &'a Answer,
+        copied: &'a [Copied],
+        pose: Option<PoseReport>,
+    ) -> AnswerJson<'a> {
+        let copied = copied.iter().map(|(key, value)| (*key, &**value));
         AnswerJson {
             model: &self.model,
             answer,
             noise: self.noise,
             nearest: self.model.nearest_of(self.evidence(touches)),
-            top: None,
-            asks_pose: false,
-            pose: None,
-            copied: Vec::new(),
+            top: self.top,
+            asks_pose: self.pose.is_some(),
+            pose,
+            copied: copied.collect(),
         }
+    }
+
+    fn words(&self, touch: &Imprint, answer: &Answer, charset: Charset) -> String {
+        let text = AnswerText {
+            model: &self.model,
+            touch,
+            answer,
+            top: self.top,
+            noise: self.noise,
+        };
+        text.text(charset)
+    }
+
+    /// Where the shape of an answer lies in the last touch, if this is asked for. None without an answer, and if the
+    /// shape does not leave this imprint.
+    fn pose(&self, touches: &[Imprint], answer: &Answer) -> Result<Option<PoseReport>, Failure> {
+        let (Some(pitch_mm), Some(shape), Some(touch)) = (self.pose, answer.shape, touches.last())
+        else {
+            return Ok(None);
+        };
+        let memory = MemoryGuard::new(None, "train the model in coarser steps to see poses");
+        let poses = memory.limit(&ToTheEnd, |progress| {
+            self.model.poses_of(shape, touch, 1, progress)
+        });
+        let found = poses.map_err(Failure::new)?.zip(touch.bounds());
+        Ok(found.map(|((estimate, mut placed), bounds)| PoseReport {
+            name: self.name(shape).clone(),
+            estimate,
+            corner: [bounds.left.into(), bounds.top.into()],
+            placed: placed.pop(),
+            pitch_mm,
+        }))
+    }
+
+    fn name(&self, shape: usize) -> &String {
+        &self.model.shapes()[shape].name
     }
 
     /// Adds the key `recognition` to the end of a frame's line of JSON: the answer of `taxel recognise` to the
     /// imprint, or null if no taxel is active.
     pub(crate) fn extend(&self, line: &mut Vec<u8>, imprint: Option<&Imprint>) {
-        let Some(end) = line.iter().rposition(|&byte| byte == b'}') else {
-            return;
-        };
-        line.truncate(end);
+        line.truncate(line.iter().rposition(|&byte| byte == b'}').unwrap_or(0));
         line.extend(b",\"recognition\":");
         match imprint.filter(|imprint| !imprint.is_empty()) {
             None => line.extend(b"null"),
             Some(&imprint) => {
-                let answer = self.model.recognise(self.evidence(&[imprint]));
-                json::extend_ascii(line, &self.json(&[imprint], &answer));
+                let answer = self.answer(&[imprint]);
+                json::extend_ascii(line, &self.json(&[imprint], &answer, &[], None));
             }
         }
         line.extend(b"}\n");
@@ -206,68 +246,45 @@ impl Namer {
 
     /// The answer to an imprint in words; empty if no taxel is active.
     pub(crate) fn text(&self, imprint: &Imprint, charset: Charset) -> String {
-        if imprint.is_empty() {
-            return String::new();
+        match imprint.is_empty() {
+            true => String::new(),
+            false => self.words(imprint, &self.answer(&[*imprint]), charset),
         }
-        let answer = self.model.recognise(self.evidence(&[*imprint]));
-        self.words(imprint, &answer, None, charset)
-    }
-
-    fn words(
-        &self,
-        touch: &Imprint,
-        answer: &Answer,
-        top: Option<usize>,
-        charset: Charset,
-    ) -> String {
-        let (model, noise) = (&self.model, self.noise);
-        AnswerText {
-            model,
-            touch,
-            answer,
-            top,
-            noise,
-        }
-        .text(charset)
     }
 }
 
 impl Recognise {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
-        let pitch_mm = self.pitch.pitch(&cx.settings)?.of(None);
-        let found = model::find(&self.model, &cx.shelf)?;
+        let pitch = self.pitch.pitch(&cx.settings)?.of(None);
+        let model = self.model.clone().unwrap_or(model::DEFAULT.into());
+        let found = model::find(model, &cx.shelf)?;
         let noise = match (self.noise, &self.mask) {
             (Some(noise), Some(mask)) => {
-                let mask = cx
-                    .shelf
-                    .find(mask)
-                    .map_err(|error| error.of_flag("--mask"))?;
+                let mask = cx.shelf.find(mask);
+                let mask = mask.map_err(|error| error.of_flag("--mask"))?;
                 Some(noise.with_dead(*mask.imprint()))
             }
             (noise, _) => noise,
         };
         let input = self.input(cx)?;
-        if let Some(expected) = &self.expect {
-            check_expected(expected, found.shapes())?;
+        let names = || found.shapes().iter().map(|shape| &*shape.name);
+        if let Some(expected) = &self.expect
+            && !names().any(|name| name == expected)
+        {
+            let shapes = names().collect::<Vec<_>>().join(", ");
+            let near = did_you_mean(expected, names());
+            let text = format!("the model has no shape named {expected:?}; its shapes are ");
+            return Err(Failure::new(text + &shapes + &near)).named("--expect");
         }
-        let namer = FoundNamer {
-            model: found,
-            noise,
-        }
-        .ready(false, cx.charset)?;
-        let recogniser = Recogniser {
-            asked: &self,
-            namer,
-            pitch_mm,
+        let namer = Namer {
+            reject: self.reject,
+            top: self.top.map(wide),
+            pose: self.pose.then_some(pitch),
+            ..FoundNamer(found, noise).ready(false, cx.charset)?
         };
         match input {
-            Question::Touch(content) => {
-                if let Some(text) = recogniser.other_threshold(&content) {
-                    cx.note(&text);
-                }
-                recogniser.answer_imprint(content.imprint(), cx)
-            }
-            Question::Lines(input) => recogniser.answer_lines(input),
+            Question::Touch(content) => self.answer_imprint(&content, &namer, cx),
+            Question::Lines(input) => self.answer_lines(input, &namer),
         }
     }
 
@@ -293,6 +310,88 @@ impl Recognise {
             false => Question::Touch(whole.content()?),
         })
     }
+
+    fn answer_imprint(
+        &self,
+        content: &Content,
+        namer: &Namer,
+        cx: &Context,
+    ) -> Result<(), Failure> {
+        if let Content::Shape(shape) = content
+            && shape.source.is_some()
+        {
+            let [trained, own] = [namer.model.sensor(), &shape.sensor].map(Sensor::threshold);
+            if own != trained {
+                let trained = format!("but the model was trained at {trained}");
+                cx.note(&format!(
+                    "{}: touched at threshold {own}, {trained}",
+                    shape.name
+                ));
+            }
+        }
+        let touch = content.imprint();
+        check_mask(&[*touch], namer)?;
+        let answer = namer.answer(&[*touch]);
+        let pose = namer.pose(&[*touch], &answer)?;
+        cx.print(&if self.json {
+            json::ascii(&namer.json(&[*touch], &answer, &[], pose)) + "\n"
+        } else {
+            let pose = match pose {
+                None if self.pose => "no pose of the model is known for this imprint\n".to_owned(),
+                pose => pose.map_or(String::new(), |pose| pose.text(touch, cx.charset)),
+            };
+            namer.words(touch, &answer, cx.charset) + &pose
+        })?;
+        if self.is_expected(&answer, namer) {
+            return Ok(());
+        }
+        let names = match answer.state {
+            AnswerState::Tied => &answer.tied[..],
+            _ => answer.shape.as_slice(),
+        };
+        let names = names
+            .iter()
+            .map(|&shape| format!("{:?}", namer.name(shape)));
+        let names = names.collect::<Vec<_>>().join(" or ");
+        let found = if names.is_empty() { "no shape" } else { &names };
+        Err(self.unexpected(&format!("{found} ({})", answer.state.name())))
+    }
+
+    fn answer_lines(&self, input: Input, namer: &Namer) -> Result<(), Failure> {
+        let (all, others) = (AtomicU64::new(0), AtomicU64::new(0));
+        let answer = |line: &[u8], text: &mut Vec<u8>| -> Result<(), Failure> {
+            let (touches, copied) = read_line(line)?;
+            check_mask(&touches, namer)?;
+            let answer = namer.answer(&touches);
+            all.fetch_add(1, Ordering::Relaxed);
+            let is_other = !self.is_expected(&answer, namer);
+            others.fetch_add(is_other.into(), Ordering::Relaxed);
+            let pose = namer.pose(&touches, &answer)?;
+            json::extend_ascii(text, &namer.json(&touches, &answer, &copied, pose));
+            Ok(())
+        };
+        let jobs = self.jobs.map_or(0, usize::from);
+        lines::answer_all(jobs, input, io::stdout().lock(), "touch", || {
+            |line: &[u8], text: &mut Vec<u8>| answer(line, text).map_err(|failure| failure.text)
+        })?;
+        let (all, others) = (counted(all.into_inner(), "line"), others.into_inner());
+        match others {
+            0 => Ok(()),
+            _ => Err(self.unexpected(&format!("another answer or none for {others} of {all}"))),
+        }
+    }
+
+    fn is_expected(&self, answer: &Answer, namer: &Namer) -> bool {
+        let named = answer.shape.map(|shape| namer.name(shape));
+        let is_named = answer.state != AnswerState::Tied && named == self.expect.as_ref();
+        is_named || self.expect.is_none()
+    }
+
+    fn unexpected(&self, found: &str) -> Failure {
+        let expected = self.expect.as_deref().unwrap_or_default();
+        let text = format!("--expect: expected {expected:?}, found {found}");
+        Failure::new(text).with_status(3)
+    }
 }
 
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
@@ -301,173 +400,20 @@ enum Question {
     Lines(Input),
 }
 
-fn check_expected(name: &str, shapes: &[NamedShape]) -> Result<(), Failure> {
-    const MOST_LISTED: usize = 10;
-    if shapes.iter().any(|shape| shape.name == name) {
+fn check_mask(touches: &[Imprint], namer: &Namer) -> Result<(), Failure> {
+    let Some(mask) = namer
+        .noise
+        .as_ref()
+        .and_then(Noise::dead)
+        .map(Imprint::size)
+    else {
         return Ok(());
-    }
-    let names = shapes.iter().map(|shape| &*shape.name);
-    let mut listed: Vec<&str> = names.clone().take(MOST_LISTED).collect();
-    if listed.len() < shapes.len() {
-        listed.push("…");
-    }
-    let (listed, near) = (listed.join(", "), did_you_mean(name, names));
-    Err(Failure::new(format!(
-        "--expect: the model has no shape named {name:?}; its shapes are {listed}{near}"
-    )))
-}
-
-struct Recogniser<'a> {
-    asked: &'a Recognise,
-    namer: Namer,
-    pitch_mm: Option<f64>,
-}
-
-impl Recogniser<'_> {
-    fn other_threshold(&self, content: &Content) -> Option<String> {
-        let Content::Shape(shape) = content else {
-            return None;
-        };
-        let [trained, own] = [self.namer.model.sensor(), &shape.sensor].map(Sensor::threshold);
-        let name = &shape.name;
-        (shape.source.is_some() && own != trained).then(|| {
-            format!("{name}: touched at threshold {own}, but the model was trained at {trained}")
-        })
-    }
-
-    fn answer_imprint(&self, touch: &Imprint, cx: &Context) -> Result<(), Failure> {
-        let touches = [*touch];
-        let answer = self.answer(&touches)?;
-        if self.asked.json {
-            let answer = self.json(&touches, &answer, &[])?;
-            cx.print(&(json::ascii(&answer) + "\n"))?;
-        } else {
-            let pose = match self.pose(&touches, &answer)? {
-                Some(pose) => pose.text(touch, cx.charset),
-                None if self.asked.pose && touch.is_empty() => {
-                    "no pose: an empty imprint does not tell where the shape lies\n".to_owned()
-                }
-                None if self.asked.pose && answer.shape.is_some() => {
-                    "no pose: the shape leaves this imprint in no pose of the model\n".to_owned()
-                }
-                None => String::new(),
-            };
-            let top = self.asked.top.map(wide);
-            cx.print(&(self.namer.words(touch, &answer, top, cx.charset) + &pose))?;
-        }
-        match self.is_expected(&answer) {
-            true => Ok(()),
-            false => Err(self.unexpected(&self.found(&answer))),
-        }
-    }
-
-    fn answer_lines(&self, input: Input) -> Result<(), Failure> {
-        let (all, others) = (AtomicU64::new(0), AtomicU64::new(0));
-        let answer = |line: &[u8], text: &mut Vec<u8>| {
-            let (touches, copied) = read_line(line).map_err(|error| error.to_string())?;
-            let answer = self.answer(&touches).map_err(|failure| failure.text)?;
-            all.fetch_add(1, Ordering::Relaxed);
-            if !self.is_expected(&answer) {
-                others.fetch_add(1, Ordering::Relaxed);
-            }
-            let json = self.json(&touches, &answer, &copied);
-            json::extend_ascii(text, &json.map_err(|failure| failure.text)?);
-            Ok(())
-        };
-        let jobs = self.asked.jobs.map_or(0, usize::from);
-        lines::answer_all(jobs, input, io::stdout().lock(), "touch", || answer)?;
-        match others.into_inner() {
-            0 => Ok(()),
-            others => {
-                let all = counted(all.into_inner(), "line");
-                Err(self.unexpected(&format!("another answer or none for {others} of {all}")))
-            }
-        }
-    }
-
-    fn answer(&self, touches: &[Imprint]) -> Result<Answer, Failure> {
-        let namer = &self.namer;
-        if let Some(mask) = namer.noise.as_ref().and_then(Noise::dead)
-            && let Some(other) = touches.iter().find(|touch| touch.size() != mask.size())
-        {
-            let (mask, other) = (mask.size(), other.size());
-            let text = format!("--mask has {mask} taxels, the imprint {other}");
-            return Err(Failure::new(text));
-        }
-        let mut evidence = namer.evidence(touches);
-        evidence.reject_below = self.asked.reject;
-        Ok(namer.model.recognise(evidence))
-    }
-
-    fn json<'a>(
-        &'a self,
-        touches: &[Imprint],
-        answer: &'a Answer,
-        copied: &'a [Copied],
-    ) -> Result<AnswerJson<'a>, Failure> {
-        let copied = copied.iter().map(|(key, value)| (*key, &**value));
-        Ok(AnswerJson {
-            top: self.asked.top.map(wide),
-            asks_pose: self.asked.pose,
-            pose: self.pose(touches, answer)?,
-            copied: copied.collect(),
-            ..self.namer.json(touches, answer)
-        })
-    }
-
-    /// Where the shape of an answer lies in the last touch, if this is asked for. None without an answer, and if the
-    /// shape does not leave this imprint.
-    fn pose(&self, touches: &[Imprint], answer: &Answer) -> Result<Option<PoseReport>, Failure> {
-        let (true, Some(shape), Some(touch)) = (self.asked.pose, answer.shape, touches.last())
-        else {
-            return Ok(None);
-        };
-        let model = &self.namer.model;
-        let memory = MemoryGuard::new(None, "train the model in coarser steps to see poses");
-        let poses = memory.limit(&ToTheEnd, |progress| {
-            model.poses_of(shape, touch, 1, progress)
-        });
-        let found = poses.map_err(Failure::new)?.zip(touch.bounds());
-        Ok(found.map(|((estimate, mut placed), bounds)| PoseReport {
-            name: self.name(shape).clone(),
-            estimate,
-            corner: [bounds.left.into(), bounds.top.into()],
-            placed: placed.pop(),
-            pitch_mm: self.pitch_mm,
-        }))
-    }
-
-    fn name(&self, shape: usize) -> &String {
-        &self.namer.model.shapes()[shape].name
-    }
-
-    fn is_expected(&self, answer: &Answer) -> bool {
-        let Some(expected) = &self.asked.expect else {
-            return true;
-        };
-        let named = answer.shape.map(|shape| self.name(shape));
-        answer.state != AnswerState::Tied && named == Some(expected)
-    }
-
-    fn found(&self, answer: &Answer) -> String {
-        let state = answer.state.name();
-        let mut names: Vec<String> = match answer.state {
-            AnswerState::Tied => answer.tied.clone(),
-            _ => answer.shape.into_iter().collect(),
-        }
-        .into_iter()
-        .map(|shape| format!("{:?}", self.name(shape)))
-        .collect();
-        if names.is_empty() {
-            names.push("no shape".to_owned());
-        }
-        format!("{} ({state})", names.join(" or "))
-    }
-
-    fn unexpected(&self, found: &str) -> Failure {
-        let expected = self.asked.expect.as_deref().unwrap_or_default();
-        let text = format!("--expect: expected {expected:?}, found {found}");
-        Failure::new(text).with_status(3)
+    };
+    match touches.iter().map(Imprint::size).find(|size| *size != mask) {
+        None => Ok(()),
+        Some(size) => Err(Failure::new(format!(
+            "--mask has {mask} taxels, the imprint {size}"
+        ))),
     }
 }
 

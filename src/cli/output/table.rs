@@ -1,4 +1,7 @@
-//! Tables for people: cells in columns, and bars.
+//! Tables: cells in columns and bars for people, records for JSON and CSV.
+
+use serde::{Serialize, Serializer};
+use serde_json::Value;
 
 use crate::cli::output::charset::Charset;
 use crate::tui::widget::write::width;
@@ -39,6 +42,36 @@ pub(crate) fn table(rows: &[Vec<String>], left: &[usize], charset: Charset) -> S
         text.push('\n');
     }
     text
+}
+
+/// Named values, which JSON has as an object and CSV as a line, both in this order.
+pub(crate) struct Record(pub(crate) Vec<(&'static str, Value)>);
+
+impl Serialize for Record {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(key, value)| (key, value)))
+    }
+}
+
+/// A line of names, then a line for each record. Whole numbers have no point.
+pub(crate) fn csv(records: &[Record]) -> String {
+    let cell = |(_, value): &(_, Value)| match value {
+        Value::String(text) => text.clone(),
+        Value::Number(number) if number.is_f64() => number
+            .as_f64()
+            .map_or_else(String::new, |number| number.to_string()),
+        other => other.to_string(),
+    };
+    let names = records.iter().take(1).map(|record| {
+        let names = record.0.iter().map(|(name, _)| *name);
+        names.collect::<Vec<_>>().join(",")
+    });
+    let lines = records.iter().map(|record| {
+        let cells = record.0.iter().map(cell);
+        cells.collect::<Vec<_>>().join(",")
+    });
+    let lines = names.chain(lines);
+    lines.map(|line| line + "\n").collect()
 }
 
 /// Draws a bar for a share, of at most `width` characters. The length is rounded, so a small share may have no bar.

@@ -3,6 +3,7 @@
 //! The best classifier is counted from all touches of the model, so its error is the limit of every method that sees
 //! one touch.
 
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::iter;
 
@@ -23,10 +24,10 @@ use crate::cli::Context;
 use crate::cli::arguments::flags::{name_or_path, whole};
 use crate::cli::commands::model::noise::NoiseFlags;
 use crate::cli::commands::model::{Table, TableFlags, find, fits_in_table, ready, watched};
-use crate::cli::failure::Failure;
+use crate::cli::failure::{Failure, Named};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{Count, EvaluationJson, NamedBy, summary};
-use crate::cli::output::table::{row, table};
+use crate::cli::output::table::{Record, csv, row, table};
 
 const EXAMPLES: &str = "\
 A row is a true shape, a column the name that the best classifier gives it; the
@@ -64,7 +65,7 @@ Examples:
     group = ArgGroup::new("not_given").args(["greedy", "pairs"]).conflicts_with("given"),
     group = ArgGroup::new("with_classifier").arg("classifier"),
 )]
-pub(super) struct Confusion {
+pub(crate) struct Confusion {
     /// Name of a model, or its file
     #[arg(value_name = "MODEL", value_parser = name_or_path())]
     model: OsString,
@@ -89,16 +90,16 @@ pub(super) struct Confusion {
     )]
     round: Vec<Rounding>,
     /// Neighbours that vote in knn; default 1
-    #[arg(long, value_name = "N", value_parser = whole::<u32>(1..), requires = "with_classifier")]
+    #[arg(long, value_name = "N", requires = "with_classifier", value_parser = whole(1_u32..))]
     neighbours: Option<u32>,
     /// Poses of each shape that knn draws; default 2000
-    #[arg(long, value_name = "N", value_parser = whole::<u32>(1..), requires = "with_classifier")]
+    #[arg(long, value_name = "N", requires = "with_classifier", value_parser = whole(1_u32..))]
     sample: Option<u32>,
     /// Imprints of each shape for template; default 100
-    #[arg(long, value_name = "N", value_parser = whole::<u32>(1..), requires = "with_classifier")]
+    #[arg(long, value_name = "N", requires = "with_classifier", value_parser = whole(1_u32..))]
     templates: Option<u32>,
     /// Seed of the random numbers; default 0
-    #[arg(long, value_name = "N", value_parser = whole::<u64>(0..))]
+    #[arg(long, value_name = "N", value_parser = whole(0_u64..))]
     pub(super) seed: Option<u64>,
     #[command(flatten)]
     pub(super) table: TableFlags,
@@ -120,98 +121,97 @@ impl Confusion {
         self.check_model(&found)?;
         let model = ready(found, self.table.quiet, cx.charset)?;
         if let Some(noise) = self.noise.noise {
-            let table = self.noise.table(noise, &model, &self, cx)?;
-            return self.table.give(&table, cx);
-        }
-        if self.greedy {
-            return self.print_greedy(&model, cx);
-        }
-        if self.pairs {
-            return self.print_pairs(&model, cx);
-        }
-        let limit = match self.known() {
-            Some(given) if self.classifier.is_none() => given.evaluate(&model),
-            _ => Evaluation::of(&model),
-        };
-        let reached = |classifier| self.reached(classifier, &model, cx);
-        match self.classifier.as_deref().map(str::parse) {
-            None => {
-                let table = Matrix(&limit, None, self.given.is_some());
-                self.table.give(&table, cx)
-            }
-            Some(Ok(classifier)) => {
+            let rates = self.noise.rates(noise, &model, &self, cx)?;
+            self.table.give(&rates, cx)
+        } else if self.greedy {
+            cx.print(&self.chosen(&model, cx.charset))
+        } else if self.pairs {
+            cx.print(&self.paired(&model, cx.charset))
+        } else if let Some(name) = &self.classifier {
+            let limit = Evaluation::of(&model);
+            let reached = |classifier| self.reached(classifier, &model, cx);
+            if let Ok(classifier) = name.parse() {
                 let reached = reached(classifier)?;
-                let table = Matrix(&reached.evaluation, Some(&reached), false);
-                self.table.give(&table, cx)
+                let (own, named) = (&reached.evaluation, NamedBy::Classifier);
+                return self.table.give(&Matrix(own, named, Some(&reached)), cx);
             }
-            Some(Err(_)) => {
-                let all = Classifier::ALL
-                    .iter()
-                    .map(|&classifier| reached(classifier));
-                let reached = all.collect::<Result<_, _>>()?;
-                self.table.give(&Classifiers { reached, limit }, cx)
-            }
+            let reached = Classifier::ALL.iter().map(|own| reached(*own));
+            let reached = reached.collect::<Result<_, _>>()?;
+            self.table.give(&Classifiers { reached, limit }, cx)
+        } else {
+            let (limit, named) = match self.known() {
+                Some(given) => (given.evaluate(&model), NamedBy::Descriptors),
+                None => (Evaluation::of(&model), NamedBy::Imprint),
+            };
+            self.table.give(&Matrix(&limit, named, None), cx)
         }
     }
 
     /// Refuses flags that would be ignored.
     fn check(&self) -> Result<(), Failure> {
-        let unused = |flag: &str, reason: String| {
-            Err(Failure::usage(format!("--{flag} has no effect {reason}")))
-        };
         let name = self.classifier.as_deref().unwrap_or_default();
         let is = |one: &str| name == one || name == ALL;
-        for (flag, is_used) in [
-            ("neighbours", is("knn") || self.neighbours.is_none()),
-            ("sample", is("knn") || self.sample.is_none()),
-            ("templates", is("template") || self.templates.is_none()),
-            ("given", name != "template" || self.given.is_none()),
-        ] {
-            if !is_used {
-                return unused(flag, format!("with --classifier {name}"));
-            }
-        }
-        if self.seed.is_some() && self.noise.noise.is_none() && !is("knn") {
-            let reason = "without --noise or --classifier knn, which draw touches";
-            return unused("seed", reason.to_owned());
-        }
-        for (index, own) in self.round.iter().enumerate() {
-            let is_same = |other: &Rounding| other.descriptor == own.descriptor;
+        let drawn = self.noise.noise.is_some() || is("knn");
+        let with = format!("with --classifier {name}");
+        let without = "without --noise or --classifier knn, which draw touches";
+        let given = |own: &Rounding| {
             let given = self.given.as_ref();
-            let key = own.descriptor.key();
-            if self.round[..index].iter().any(is_same) {
-                return unused("round", format!("for {key}, which has a step already"));
-            } else if given.is_some_and(|given| !given.descriptors.contains(&own.descriptor)) {
-                return unused("round", format!("for {key}, which --given does not name"));
+            given.is_none_or(|given| given.descriptors.contains(&own.descriptor))
+        };
+        let unused = [
+            (
+                "neighbours",
+                self.neighbours.is_some() && !is("knn"),
+                &*with,
+            ),
+            ("sample", self.sample.is_some() && !is("knn"), &with),
+            (
+                "templates",
+                self.templates.is_some() && !is("template"),
+                &with,
+            ),
+            ("given", self.given.is_some() && name == "template", &with),
+            ("seed", self.seed.is_some() && !drawn, without),
+            (
+                "round",
+                !self.round.iter().all(given),
+                "for what --given does not name",
+            ),
+        ];
+        match unused.into_iter().find(|(_, is_unused, _)| *is_unused) {
+            None => Ok(()),
+            Some((flag, _, reason)) => {
+                Err(Failure::usage(format!("--{flag} has no effect {reason}")))
             }
         }
-        Ok(())
     }
 
     /// Refuses what the shapes and the sensor of a model do not allow, and a file that cannot be written: before the
     /// work, not after it.
     fn check_model(&self, found: &FoundModel) -> Result<(), Failure> {
-        let shapes: Vec<String> = found.shapes().iter().map(|own| own.name.clone()).collect();
-        let is_matrix = !self.greedy
-            && !self.pairs
-            && self.noise.noise.is_none()
-            && self.classifier.as_deref() != Some(ALL);
-        if self.pairs {
-            fits_in_table("--pairs", shapes.len())?;
-        }
+        let names = found.shapes().iter().map(|own| own.name.clone());
+        let shapes: Vec<String> = names.collect();
+        let is_table = self.classifier.as_deref() == Some(ALL);
+        let is_matrix = !(is_table || self.greedy || self.noise.noise.is_some());
         if is_matrix {
-            fits_in_table("confusion matrix", shapes.len())?;
+            let table = if self.pairs {
+                "--pairs"
+            } else {
+                "confusion matrix"
+            };
+            fits_in_table(table, shapes.len())?;
         }
         self.noise.check(&found.sensor())?;
-        if let Some(path) = self.table.draws().map(|path| path.display()) {
-            if self.classifier.as_deref() == Some(ALL) {
-                let text = "expected a name that ends in .csv, for the table of all classifiers";
-                return Err(Failure::new(format!("{path}: {text}")));
-            }
-            if is_matrix && ConfusionMap::new(&shapes, []).is_none() {
-                let text = "shapes, and a drawing shows at most 64; .csv takes all";
-                return Err(Failure::new(format!("{path}: {} {text}", shapes.len())));
-            }
+        if let Some(path) = self.table.drawing() {
+            let most = "shapes, and a drawing shows at most 64; .csv takes all";
+            let refused = if is_table {
+                "expected a name that ends in .csv, for the table of all classifiers".to_owned()
+            } else if is_matrix && ConfusionMap::new(&shapes, []).is_none() {
+                format!("{} {most}", shapes.len())
+            } else {
+                return self.table.check();
+            };
+            return Err(Failure::new(refused)).named(path.display());
         }
         self.table.check()
     }
@@ -230,13 +230,12 @@ impl Confusion {
         cx: &Context,
     ) -> Result<ClassifierEvaluation, Failure> {
         let usual = ClassifierSettings::default();
-        let or = |given: Option<u32>, usual| given.map_or(usual, wide);
         let settings = ClassifierSettings {
             descriptors: self.given.as_ref().map(|given| given.descriptors.clone()),
-            neighbours: or(self.neighbours, usual.neighbours),
-            sample: or(self.sample, usual.sample),
-            templates: or(self.templates, usual.templates),
-            seed: self.seed.unwrap_or_default(),
+            neighbours: self.neighbours.map_or(usual.neighbours, wide),
+            sample: self.sample.map_or(usual.sample, wide),
+            templates: self.templates.map_or(usual.templates, wide),
+            seed: self.seed.unwrap_or(usual.seed),
         };
         let all = (model.keys().len() as u64, "imprints");
         watched(all, self.table.quiet, cx, |progress| {
@@ -245,7 +244,7 @@ impl Confusion {
     }
 
     /// The error falls from row to row, at best to that of the whole imprint; `values` are the distinct combinations.
-    fn print_greedy(&self, model: &Model, cx: &Context) -> Result<(), Failure> {
+    fn chosen(&self, model: &Model, charset: Charset) -> String {
         let chosen = model.choose_descriptors(&self.round);
         let limit = Evaluation::of(model);
         if self.table.json {
@@ -258,92 +257,74 @@ impl Confusion {
                 })
             });
             let steps: Vec<_> = steps.collect();
-            let answer = json!({"chosen": steps, "limit": limit.error()});
-            return cx.print(&(answer.to_string() + "\n"));
+            return json!({"chosen": steps, "limit": limit.error()}).to_string() + "\n";
         }
-        let step_row = |name: &str, own: &Evaluation| {
+        let cells = |name: &str, own: &Evaluation| {
             row([name, &percent(own.error()), &grouped(own.keys as u64)])
         };
         let mut rows = vec![row(["descriptors chosen one by one", "error", "values"])];
         for step in &chosen {
-            rows.push(step_row(
+            rows.push(cells(
                 &format!("+ {}", step.descriptor.key()),
                 &step.evaluation,
             ));
         }
-        rows.push(step_row("limit: the whole imprint", &limit));
-        cx.print(&table(&rows, &[0], cx.charset))
+        rows.push(cells("limit: the whole imprint", &limit));
+        table(&rows, &[0], charset)
     }
 
     /// The matrix is symmetric: each entry is the error of the best classifier if there were only these two shapes.
-    fn print_pairs(&self, model: &Model, cx: &Context) -> Result<(), Failure> {
+    fn paired(&self, model: &Model, charset: Charset) -> String {
         let errors = model.pair_errors();
         let names = model.shapes().iter().map(|shape| shape.name.clone());
         let labels: Vec<String> = names.collect();
         if self.table.json {
-            let answer = json!({"labels": labels, "errors": errors});
-            return cx.print(&(json::ascii(&answer) + "\n"));
+            return json::ascii(&json!({"labels": labels, "errors": errors})) + "\n";
         }
         let rows = square(&labels, |row, column| match row == column {
             true => "–".to_owned(),
             false => percentage(errors[row][column], 2),
         });
-        let text = table(&rows, &[0], cx.charset);
-        cx.print(&(text + "errors in percent, for each pair alone\n"))
+        table(&rows, &[0], charset) + "errors in percent, for each pair alone\n"
     }
 }
 
 /// The rows of a table with a row and a column for each shape; columns are numbered.
 fn square(labels: &[String], cell: impl Fn(usize, usize) -> String) -> Vec<Vec<String>> {
-    let shapes = labels.len();
-    let digits = shapes.to_string().len();
-    let numbers = (1..=shapes).map(|number| format!("{number} "));
+    let digits = labels.len().to_string().len();
+    let numbers = (1..=labels.len()).map(|number| format!("{number} "));
     let mut rows = vec![iter::once(String::new()).chain(numbers).collect()];
     for (row, label) in labels.iter().enumerate() {
         let name = format!("{:>digits$} {label}", row + 1);
-        let cells = (0..shapes).map(|column| cell(row, column));
+        let cells = (0..labels.len()).map(|column| cell(row, column));
         rows.push(iter::once(name).chain(cells).collect());
     }
     rows
 }
 
-/// An evaluation, the classifier if it is not the best one, and whether only given descriptors are known.
-struct Matrix<'a>(&'a Evaluation, Option<&'a ClassifierEvaluation>, bool);
+struct Matrix<'a>(&'a Evaluation, NamedBy, Option<&'a ClassifierEvaluation>);
 
 impl Table for Matrix<'_> {
     /// The matrix has the diagonal in brackets, zero as a dot, recall on the right, precision below.
     fn text(&self, charset: Charset) -> String {
-        let &Self(own, classifier, is_given) = self;
-        let named = match (classifier, is_given) {
-            (Some(_), _) => NamedBy::Classifier,
-            (None, true) => NamedBy::Descriptors,
-            (None, false) => NamedBy::Imprint,
-        };
-        let dot = match charset {
-            Charset::Ascii => ".",
-            Charset::Unicode => "·",
-        };
+        let &Self(own, named, classifier) = self;
         let mut rows = square(&own.labels, |row, column| {
             match (own.confusion.get(row, column), row == column) {
                 (touches, true) => format!("[{touches}]"),
-                (0, false) => format!("{dot} "),
+                (0, false) => "· ".to_owned(),
                 (touches, false) => format!("{touches} "),
             }
         });
-        let none = || "–".to_owned();
         rows[0].push("recall".to_owned());
-        for (shape, row) in rows[1..].iter_mut().enumerate() {
-            row.push(own.recall(shape).map_or_else(none, percent));
+        let mut precision = vec!["precision".to_owned()];
+        for shape in 0..own.labels.len() {
+            let recall = own.recall(shape).map(percent);
+            let named_right = own.precision(shape);
+            let named_right = named_right.map(|share| percentage(share, 0) + "% ");
+            rows[shape + 1].push(recall.unwrap_or("–".to_owned()));
+            precision.push(named_right.unwrap_or("– ".to_owned()));
         }
-        let precision = (0..own.labels.len()).map(|shape| {
-            let precision = own.precision(shape);
-            precision.map_or_else(none, |share| percentage(share, 0) + "%") + " "
-        });
-        rows.push(
-            iter::once("precision".to_owned())
-                .chain(precision)
-                .collect(),
-        );
+        rows.push(precision);
         let mut text = summary(own, named) + "\n" + &table(&rows, &[0], charset);
         let pairs = own.worst_pairs();
         let pairs = pairs.iter().take(3).map(|pair| {
@@ -355,10 +336,9 @@ impl Table for Matrix<'_> {
         if !pairs.is_empty() {
             text += &format!("most confused: {}\n", pairs.join(", "));
         }
-        charset.lines(&(text + &classifier.map_or(String::new(), features) + &sampled(classifier)))
+        text + &classifier.map_or(String::new(), features) + &sampled(classifier)
     }
 
-    /// A heading row of names, then a row for each true shape.
     fn csv(&self) -> String {
         let mut table = csv::Writer::from_writer(Vec::new());
         let mut write = |name: &str, cells: &[String]| {
@@ -375,11 +355,12 @@ impl Table for Matrix<'_> {
     }
 
     fn json(&self) -> String {
-        let (evaluation, classifier) = (self.0, self.1);
-        json::ascii(&EvaluationJson {
+        let (evaluation, classifier) = (self.0, self.2);
+        let answer = EvaluationJson {
             evaluation,
             classifier,
-        }) + "\n"
+        };
+        json::ascii(&answer) + "\n"
     }
 
     fn svg(&self) -> Option<String> {
@@ -399,18 +380,19 @@ fn features(reached: &ClassifierEvaluation) -> String {
     if reached.classifier == Classifier::Template {
         return String::new();
     }
-    let dropped = reached.dropped.iter();
-    let dropped = dropped.map(|(name, reason)| format!("left out: {name}, {reason}\n"));
-    format!("features: {}\n", reached.features.join(", ")) + &dropped.collect::<String>()
+    let mut text = format!("features: {}\n", reached.features.join(", "));
+    for (name, reason) in &reached.dropped {
+        text += &format!("left out: {name}, {reason}\n");
+    }
+    text
 }
 
 fn sampled<'a>(reached: impl IntoIterator<Item = &'a ClassifierEvaluation>) -> String {
     let drawn = reached.into_iter().filter_map(|own| {
         let (name, sample) = (own.classifier.name(), own.sample?);
         let (poses, seed) = (grouped(sample.per_shape as u64), sample.seed);
-        Some(format!(
-            "{name} draws {poses} poses of each shape, with seed {seed}\n"
-        ))
+        let text = format!("{name} draws {poses} poses of each shape, with seed {seed}\n");
+        Some(text)
     });
     drawn.collect()
 }
@@ -422,44 +404,40 @@ struct Classifiers {
 }
 
 impl Classifiers {
-    fn rows<'a>(
-        &'a self,
-        limit: &'static str,
-    ) -> impl Iterator<Item = (&'static str, &'a Evaluation)> {
+    fn rows(&self) -> impl Iterator<Item = (&'static str, &Evaluation, f64)> {
         let reached = self.reached.iter();
         let reached = reached.map(|own| (own.classifier.name(), &own.evaluation));
-        reached.chain([(limit, &self.limit)])
+        let rows = reached.chain([("limit", &self.limit)]);
+        rows.map(|(name, own)| (name, own, share(own.right_in_top_two, own.touches)))
     }
-}
-
-fn top_two(own: &Evaluation) -> f64 {
-    share(own.right_in_top_two, own.touches)
 }
 
 impl Table for Classifiers {
     fn text(&self, charset: Charset) -> String {
         let mut rows = vec![row(["classifier", "error", "top two", "information"])];
-        for (name, own) in self.rows("limit of one touch") {
+        for (name, own, top_two) in self.rows() {
             let bits = format!("{:.3} bits", own.information_bits);
-            let (error, top_two) = (percent(own.error()), percent(top_two(own)));
-            rows.push(row([name, &error, &top_two, &bits]));
+            rows.push(row([name, &percent(own.error()), &percent(top_two), &bits]));
         }
         let features = self.reached.first().map_or(String::new(), features);
-        table(&rows, &[0], charset) + &charset.lines(&(features + &sampled(&self.reached)))
+        table(&rows, &[0], charset) + &features + &sampled(&self.reached)
     }
 
     fn csv(&self) -> String {
-        let mut text = String::from("classifier,error,right_in_top_two,information_bits\n");
-        for (name, own) in self.rows("limit") {
-            let (error, top_two, bits) = (own.error(), top_two(own), own.information_bits);
-            text += &format!("{name},{error},{top_two},{bits}\n");
-        }
-        text
+        let records = self.rows().map(|(name, own, top_two)| {
+            Record(vec![
+                ("classifier", json!(name)),
+                ("error", json!(own.error())),
+                ("right_in_top_two", json!(top_two)),
+                ("information_bits", json!(own.information_bits)),
+            ])
+        });
+        csv(&records.collect::<Vec<_>>())
     }
 
     fn json(&self) -> String {
-        let errors = self.rows("limit").map(|(name, own)| (name, own.error()));
-        json::text(&errors.collect::<std::collections::BTreeMap<_, _>>()) + "\n"
+        let errors = self.rows().map(|(name, own, _)| (name, own.error()));
+        json::text(&errors.collect::<BTreeMap<_, _>>()) + "\n"
     }
 
     fn svg(&self) -> Option<String> {

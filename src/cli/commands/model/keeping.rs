@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::ffi::OsString;
 
 use serde_json::{Value, json};
+use taxel_core::parameter::Parameter;
+use taxel_core::parameter::number::short;
 use taxel_core::pose::Axis;
 use taxel_core::quote::did_you_mean;
 use taxel_core::recognition::{Evaluation, Model, NamedShape};
@@ -31,7 +33,7 @@ Examples:
 /// Show what a model was trained on, and its error
 #[derive(Debug, clap::Args)]
 #[command(after_help = SHOW_EXAMPLES)]
-pub(super) struct Show {
+pub(crate) struct Show {
     /// Name of a model, or its file
     #[arg(value_name = "MODEL", value_parser = name_or_path())]
     model: OsString,
@@ -75,11 +77,11 @@ fn text(model: &Model, limit: &Evaluation) -> String {
         true => "prior: all shapes are equally likely\n",
         false => "prior: shapes are as likely as their weights say\n",
     };
+    let cut: u64 = model.cut().iter().sum();
     text += &format!("{} each", counted(model.poses(), "pose"));
     if model.shard() != Shard::WHOLE {
         text += &format!(", shard {}", model.shard());
     }
-    let cut: u64 = model.cut().iter().sum();
     if cut > 0 {
         text += &format!(", {} of all cut off by the sensor", grouped(cut));
     }
@@ -95,24 +97,22 @@ fn text(model: &Model, limit: &Evaluation) -> String {
     text + &format!("hash {}\n", model_hash(model))
 }
 
-/// Describes a shape in a few words: `rectangle length 4.50, width 4.30` for a figure, without its pose, which the
-/// grid sets; `picture of 36 taxels`.
+/// Describes a shape in a few words, without its pose, which the grid sets: `rectangle l 4.50 w 4.30`.
 fn described(shape: &NamedShape) -> String {
-    let Some(kind) = shape.source.kind() else {
-        return match &shape.source {
-            Source::Picture(picture) => {
-                format!("picture of {}", counted(picture.imprint().count(), "taxel"))
-            }
-            other => other.noun().to_owned(),
-        };
-    };
-    let is_axis = |own| Axis::ALL.iter().any(|axis| axis.parameter() == own);
-    let sizes = kind.parameters().iter().filter(|&&own| !is_axis(own));
-    let sizes = sizes.filter_map(|&own| {
-        let value = shape.source.get(own)?;
-        Some(format!("{} {}", own.row().key, own.format(value)))
-    });
-    format!("{} {}", kind.name(), sizes.collect::<Vec<_>>().join(", "))
+    match &shape.source {
+        Source::Figure(figure) => {
+            let thickness = figure.get(Parameter::Thickness);
+            let thickness = thickness.map(|own| format!(" thickness {}", short(own)));
+            figure.kind_and_sizes() + &thickness.unwrap_or_default()
+        }
+        Source::Picture(picture) => {
+            format!("picture of {}", counted(picture.imprint().count(), "taxel"))
+        }
+    }
+}
+
+fn names(model: &Model) -> impl Iterator<Item = &str> {
+    model.shapes().iter().map(|shape| &*shape.name)
 }
 
 fn never_certain(model: &Model) -> Vec<&str> {
@@ -161,7 +161,7 @@ Examples:
 /// List the models
 #[derive(Debug, clap::Args)]
 #[command(after_help = LIST_EXAMPLES)]
-pub(super) struct List {
+pub(crate) struct List {
     /// Print JSON, one line per answer
     #[arg(long)]
     json: bool,
@@ -175,25 +175,25 @@ impl List {
                 cx.print(&format!("{}: built in\n", own.name()))?;
             }
         }
-        let Ok(folder) = folder(&cx.shelf) else {
-            return Ok(());
-        };
-        for (name, path) in folder.list()? {
-            let line = match (load_model(&path), self.json) {
-                (Ok(model), true) => json::ascii(&json!({
-                    "name": name.as_str(),
-                    "file": path.to_string_lossy(),
-                    "shapes": model.shapes().iter().map(|shape| &shape.name).collect::<Vec<_>>(),
-                    "keys": model.keys().len(),
-                    "shard": model.shard().to_string(),
-                })),
-                (Err(error), true) => {
-                    json::ascii(&json!({"name": name.as_str(), "error": error.to_string()}))
-                }
-                (Ok(model), false) => format!("{name}: {}", in_short(&model)),
-                (Err(error), false) => format!("{name}: {error}"),
+        let models = folder(&cx.shelf).map_or(Ok(Vec::new()), |folder| folder.list())?;
+        for (name, path) in models {
+            let model = load_model(&path);
+            let line = if self.json {
+                json::ascii(&match model {
+                    Ok(model) => json!({
+                        "name": name.as_str(),
+                        "file": path.to_string_lossy(),
+                        "shapes": names(&model).collect::<Vec<_>>(),
+                        "keys": model.keys().len(),
+                        "shard": model.shard().to_string(),
+                    }),
+                    Err(error) => json!({"name": name.as_str(), "error": error.to_string()}),
+                })
+            } else {
+                let said = model.map_or_else(|error| error.to_string(), |model| in_short(&model));
+                format!("{name}: {said}")
             };
-            cx.print(&(cx.charset.line(&line) + "\n"))?;
+            cx.print(&format!("{}\n", cx.charset.line(&line)))?;
         }
         Ok(())
     }
@@ -202,14 +202,12 @@ impl List {
 fn in_short(model: &Model) -> String {
     let shapes = counted(model.shapes().len() as u64, "shape");
     let keys = counted(model.keys().len() as u64, "distinct imprint");
-    match model.shard() {
-        Shard::WHOLE => {
-            let error = percent(Evaluation::of(model).error());
-            format!("{shapes}, {keys}, error {error}")
-        }
-        // Its error would be that of a part of the touches.
-        shard => format!("{shapes}, {keys}, shard {shard} of a model"),
-    }
+    // The error of a shard would be that of a part of the touches.
+    let rest = match model.shard() {
+        Shard::WHOLE => format!("error {}", percent(Evaluation::of(model).error())),
+        shard => format!("shard {shard} of a model"),
+    };
+    format!("{shapes}, {keys}, {rest}")
 }
 
 const DELETE_EXAMPLES: &str = "\
@@ -221,7 +219,7 @@ Examples:
 /// Delete a model
 #[derive(Debug, clap::Args)]
 #[command(after_help = DELETE_EXAMPLES)]
-pub(super) struct Delete {
+pub(crate) struct Delete {
     /// Name of the model
     #[arg(value_parser = Name::new)]
     name: Name,
@@ -230,18 +228,18 @@ pub(super) struct Delete {
 impl Delete {
     /// Unlike a shape of the library, a model does not go to the trash: it can be trained again.
     pub(super) fn run(self, cx: &Context) -> Result<(), Failure> {
-        let (models, name) = (folder(&cx.shelf)?, &self.name);
-        if let Some(deleted) = models.delete(name)? {
-            return cx.print(&cx.charset.lines(&format!("deleted {deleted}\n")));
-        }
-        if !ModelChoice::from_name(name.clone()).is_read() {
-            let text = format!("{name} is built in and cannot be deleted");
-            return Err(Failure::new(text));
+        let (models, name) = (folder(&cx.shelf)?, self.name);
+        if let Some(deleted) = models.delete(&name)? {
+            return cx.print(&format!("deleted {deleted}\n"));
         }
         let near = did_you_mean(name.as_str(), models.names().iter().map(Name::as_str));
-        let name = name.to_string();
-        Err(Failure::new(format!(
-            "no model named {name:?}; 'taxel model list' shows all{near}"
-        )))
+        let text = match ModelChoice::from_name(name.clone()) {
+            ModelChoice::Stored(_) => {
+                let name = name.as_str();
+                format!("no model named {name:?}; 'taxel model list' shows all{near}")
+            }
+            _ => format!("{name} is built in and cannot be deleted"),
+        };
+        Err(Failure::new(text))
     }
 }

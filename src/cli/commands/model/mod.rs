@@ -8,7 +8,6 @@ mod confusion;
 mod keeping;
 mod noise;
 mod separate;
-mod touches;
 mod train;
 
 use std::ffi::{OsStr, OsString};
@@ -25,7 +24,7 @@ use taxel_files::storage::{
 use crate::cli::Context;
 use crate::cli::arguments::flags::{name_or_path, report};
 use crate::cli::commands::export::written;
-use crate::cli::failure::Failure;
+use crate::cli::failure::{Failure, Named};
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::progress::ProgressDisplay;
@@ -49,35 +48,28 @@ Examples:
   taxel model confusion parts
   taxel recognise imprint.txt --model parts";
 
-/// Train models, and measure how well one touch tells shapes apart
-#[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES)]
-pub(crate) struct ModelCommand {
-    #[command(subcommand)]
-    command: Subcommand,
-}
-
 #[derive(Debug, clap::Subcommand)]
-enum Subcommand {
+#[command(after_help = EXAMPLES)]
+pub(crate) enum ModelCommand {
     Train(train::Train),
     Show(keeping::Show),
     List(keeping::List),
     Delete(keeping::Delete),
     Confusion(confusion::Confusion),
-    Touches(touches::Touches),
+    Touches(noise::Touches),
     Separate(separate::Separate),
 }
 
 impl ModelCommand {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
-        match self.command {
-            Subcommand::Train(command) => command.run(cx),
-            Subcommand::Show(command) => command.run(cx),
-            Subcommand::List(command) => command.run(cx),
-            Subcommand::Delete(command) => command.run(cx),
-            Subcommand::Confusion(command) => command.run(cx),
-            Subcommand::Touches(command) => command.run(cx),
-            Subcommand::Separate(command) => command.run(cx),
+        match self {
+            Self::Train(command) => command.run(cx),
+            Self::Show(command) => command.run(cx),
+            Self::List(command) => command.run(cx),
+            Self::Delete(command) => command.run(cx),
+            Self::Confusion(command) => command.run(cx),
+            Self::Touches(command) => command.run(cx),
+            Self::Separate(command) => command.run(cx),
         }
     }
 }
@@ -86,12 +78,8 @@ impl ModelCommand {
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct SetFlags {
     /// Shapes: files of JSON lines, '-' for standard input, or names of the library
-    #[arg(
-        id = "set",
-        value_name = "FILE.jsonl|NAME",
-        value_parser = name_or_path(),
-        required_unless_present = "library_all"
-    )]
+    #[arg(id = "set", value_name = "FILE.jsonl|NAME", value_parser = name_or_path())]
+    #[arg(required_unless_present = "library_all")]
     pub(crate) what: Vec<OsString>,
     /// All shapes of the library
     #[arg(long)]
@@ -119,7 +107,7 @@ pub(crate) struct TableFlags {
 }
 
 /// An answer in its forms.
-pub(crate) trait Table {
+trait Table {
     fn text(&self, charset: Charset) -> String;
 
     fn csv(&self) -> String;
@@ -131,27 +119,25 @@ pub(crate) trait Table {
 }
 
 impl TableFlags {
-    fn existing(&self) -> Existing {
-        existing(self.force)
-    }
-
     /// Refuses a file that cannot be written: before the work, not after it.
     fn check(&self) -> Result<(), Failure> {
-        let export = self.export.as_ref();
-        export.map_or(Ok(()), |path| Ok(check_writable(path, self.existing())?))
+        if let Some(path) = &self.export {
+            check_writable(path, existing(self.force))?;
+        }
+        Ok(())
     }
 
-    fn draws(&self) -> Option<&Path> {
-        self.export
-            .as_deref()
-            .filter(|path| has_ending(path, "svg"))
+    /// The file that gets a drawing.
+    fn drawing(&self) -> Option<&PathBuf> {
+        let path = self.export.as_ref();
+        path.filter(|path| has_ending(path, "svg"))
     }
 
     fn give(&self, table: &impl Table, cx: &Context) -> Result<(), Failure> {
         if let Some(path) = &self.export {
-            let drawing = self.draws().and_then(|_| table.svg());
+            let drawing = self.drawing().and_then(|_| table.svg());
             let content = drawing.unwrap_or_else(|| table.csv());
-            storage::write(path, content.as_bytes(), self.existing())?;
+            storage::write(path, content.as_bytes(), existing(self.force))?;
             if !self.quiet {
                 cx.note(&written(path));
             }
@@ -165,16 +151,15 @@ impl TableFlags {
 }
 
 fn existing(force: bool) -> Existing {
-    if force {
-        Existing::Replaced
-    } else {
-        Existing::Kept
+    match force {
+        true => Existing::Replaced,
+        false => Existing::Kept,
     }
 }
 
 /// Parses a number of positions per cell. Their distance must be a whole number of hundredths of a cell, since ranges
 /// are exact in hundredths.
-fn parse_positions(text: &str) -> Result<CellPositions, &'static str> {
+fn positions(text: &str) -> Result<CellPositions, &'static str> {
     let number = text.trim().parse::<u8>().ok();
     let positions = number.and_then(CellPositions::new);
     positions.ok_or("expected 1, 2, 4, 5, 10, 20, 25, 50 or 100")
@@ -186,19 +171,16 @@ pub(crate) fn model_file(path: &Path) -> Result<(), Failure> {
     if has_ending(path, "npz") {
         return Ok(());
     }
-    let name = path.display();
-    Err(Failure::new(format!(
-        "{name}: expected a name that ends in .npz, for a model"
-    )))
+    let expected = "expected a name that ends in .npz, for a model";
+    Err(Failure::new(expected)).named(path.display())
 }
 
 pub(crate) fn fits_in_table(table: &str, shapes: usize) -> Result<(), Failure> {
     if shapes <= MOST_PAIRED {
         return Ok(());
     }
-    Err(Failure::new(format!(
-        "{table}: the model has {shapes} shapes (allowed: up to {MOST_PAIRED})"
-    )))
+    let text = format!("the model has {shapes} shapes (allowed: up to {MOST_PAIRED})");
+    Err(Failure::new(text)).named(table)
 }
 
 fn folder(shelf: &Shelf) -> Result<ModelFolder, Failure> {
@@ -257,11 +239,11 @@ fn trained<T: Send>(
         pool.install(|| work(progress))
     });
     drop(display);
+    let hint =
+        "; use a larger sensor, other positions or smaller shapes, or allow it with --allow-cut";
     done.map_err(Failure::new)?.map_err(|error| match error {
         TrainingError::Stopped => signals.failure().into(),
-        error @ TrainingError::Cut { .. } => Failure::from(error).with_hint(
-            "; use a larger sensor, other positions or smaller shapes, or allow it with --allow-cut",
-        ),
+        error @ TrainingError::Cut { .. } => Failure::from(error).with_hint(hint),
         error => error.into(),
     })
 }

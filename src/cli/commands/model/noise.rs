@@ -1,77 +1,74 @@
-//! `taxel model confusion --noise`: how often noisy touches are named right.
+//! Simulated touches. `taxel model confusion --noise`: how often noisy ones are named right; `taxel model touches`: how
+//! many it takes until one shape is probable enough.
 //!
 //! Noise flips each taxel independently with the same probability. Dead taxels are inactive; they are drawn anew for
 //! each touch, but are the same at every noise, so that rows can be compared. The classifier knows the noise and which
 //! taxels are dead. The same seed gives the same numbers with any number of threads.
 
+use std::ffi::OsString;
+
 use serde_json::json;
 use taxel_core::index::narrow;
 use taxel_core::parameter::number::share;
 use taxel_core::pose::DecimalRange;
-use taxel_core::recognition::{Model, Noise, NoisyTouches, RecognitionRate};
+use taxel_core::recognition::{
+    MOST_TOUCHES, Model, Noise, NoisyTouches, RecognitionRate, TouchesUntil,
+};
 use taxel_core::sensor::{MatrixSize, Sensor};
-use taxel_files::formats::value::{counted, percent};
+use taxel_files::formats::value::{counted, grouped, percent};
 use taxel_files::formats::{Plot, json};
 
 use crate::cli::Context;
-use crate::cli::arguments::flags::whole;
+use crate::cli::arguments::flags::{name_or_path, parse_probability, whole};
 use crate::cli::arguments::parameters::parse_range;
 use crate::cli::commands::model::confusion::Confusion;
-use crate::cli::commands::model::{Table, watched};
-use crate::cli::failure::Failure;
+use crate::cli::commands::model::{Table, find, ready, watched};
+use crate::cli::failure::{Failure, Named};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{Count, WEIGHTED};
 use crate::cli::output::plot;
-use crate::cli::output::table::{bar, row, table};
+use crate::cli::output::table::{Record, bar, csv, row, table};
+
+/// The most noisy touches of a shape.
+const MOST: u64 = 1_000_000_000;
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Noise")]
 pub(super) struct NoiseFlags {
     /// Test touches whose taxels flip with this probability
-    #[arg(
-        long,
-        value_name = "START:END:STEP",
-        value_parser = parse_noise_range,
-        group = "with_noise"
-    )]
+    #[arg(long, value_name = "START:END:STEP", value_parser = noise_range, group = "with_noise")]
     pub(super) noise: Option<DecimalRange>,
     /// Also test with N dead taxels, drawn anew for each touch; default 0
     #[arg(
         long,
         value_name = "N,...",
         value_delimiter = ',',
-        value_parser = whole::<u32>(0..=4095),
         requires = "with_noise"
     )]
+    #[arg(value_parser = whole::<u32>(0..=4095))]
     dead: Vec<u32>,
     /// Noisy touches of each shape; default 1000
-    #[arg(
-        long,
-        value_name = "N",
-        value_parser = whole::<u64>(1..=1_000_000_000),
-        requires = "with_noise"
-    )]
+    #[arg(long, value_name = "N", value_parser = whole(1..=MOST), requires = "with_noise")]
     touches: Option<u64>,
     /// Columns and rows of the sensor for noisy touches; default those of the model
-    #[arg(long, value_name = "CxR", value_parser = parse_matrix, requires = "with_noise")]
+    #[arg(long, value_name = "CxR", value_parser = matrix, requires = "with_noise")]
     matrix: Option<MatrixSize>,
 }
 
-/// Parses probabilities that a taxel flips, such as `0:0.1:0.02`. Both ends must be valid for [`Noise::new`].
-fn parse_noise_range(text: &str) -> Result<DecimalRange, String> {
+/// Both ends must be valid for [`Noise::new`].
+fn noise_range(text: &str) -> Result<DecimalRange, String> {
     let range = parse_range(text)?;
-    for value in [range.value(0), range.last()] {
-        Noise::new(value).map_err(|error| error.to_string())?;
-    }
-    Ok(range)
+    let checked = Noise::new(range.value(0)).and(Noise::new(range.last()));
+    checked.map(|_| range).map_err(|error| error.to_string())
 }
 
-fn parse_matrix(text: &str) -> Result<MatrixSize, &'static str> {
+fn matrix(text: &str) -> Result<MatrixSize, &'static str> {
     let side = |text: &str| text.trim().parse::<u8>().ok();
-    let size = text
-        .split_once('x')
-        .and_then(|(columns, rows)| MatrixSize::new(side(columns)?, side(rows)?).ok());
-    size.ok_or("expected columns and rows from 1 to 64, such as 16x16")
+    let size = || {
+        let (columns, rows) = text.split_once('x')?;
+        MatrixSize::new(side(columns)?, side(rows)?).ok()
+    };
+    size().ok_or("expected columns and rows from 1 to 64, such as 16x16")
 }
 
 impl NoiseFlags {
@@ -81,15 +78,16 @@ impl NoiseFlags {
 
     pub(super) fn check(&self, of_model: &Sensor) -> Result<(), Failure> {
         let cells = narrow(self.size(of_model).cells());
-        match self.dead.iter().find(|&&dead| dead > cells) {
-            None => Ok(()),
-            Some(dead) => Err(Failure::new(format!(
-                "--dead {dead} is above {cells} (allowed: 0 to {cells}, the taxels of the matrix)"
-            ))),
-        }
+        let Some(dead) = self.dead.iter().find(|&&dead| dead > cells) else {
+            return Ok(());
+        };
+        let allowed = format!("(allowed: 0 to {cells}, the taxels of the matrix)");
+        Err(Failure::new(format!(
+            "--dead {dead} is above {cells} {allowed}"
+        )))
     }
 
-    pub(super) fn table(
+    pub(super) fn rates(
         &self,
         noise: DecimalRange,
         model: &Model,
@@ -98,12 +96,11 @@ impl NoiseFlags {
     ) -> Result<NoisyRates, Failure> {
         let size = self.size(model.sensor());
         if let Some(shape) = model.first_too_large(size) {
-            let name = &model.shapes()[shape].name;
-            let text = format!("{name}: none of its imprints fits on {size} taxels");
-            return Err(Failure::new(text));
+            let text = format!("none of its imprints fits on {size} taxels");
+            return Err(Failure::new(text)).named(&model.shapes()[shape].name);
         }
-        if let Some(text) = left_out(model, size).filter(|_| !asked.table.quiet) {
-            cx.note(&text);
+        if !asked.table.quiet {
+            note_left_out(model, size, cx);
         }
         let dead = if self.dead.is_empty() {
             &[0][..]
@@ -112,82 +109,85 @@ impl NoiseFlags {
         };
         let (each, seed) = (self.touches.unwrap_or(1000), asked.seed.unwrap_or_default());
         let given = asked.known();
-        let noises: Vec<f64> = noise.values().collect();
-        let rows = (noises.len() * dead.len()) as u64;
+        let rows = noise.count() * dead.len() as u64;
         let all = each * model.shapes().len() as u64 * rows;
-        let mut rates = NoisyRates {
-            rows: Vec::new(),
+        let rows = watched((all, "touches"), asked.table.quiet, cx, |progress| {
+            let mut rows = Vec::new();
+            for &dead in dead {
+                for value in noise.values() {
+                    let noise = Noise::new(value).ok()?;
+                    let mut touches = NoisyTouches::new(size, noise, each, seed);
+                    touches.random_dead = dead;
+                    let rate = match &given {
+                        None => model.recognition_rate(&touches, &noise, progress),
+                        Some(given) => given.rate(model, &touches, progress),
+                    };
+                    rows.push((value, dead, rate?));
+                }
+            }
+            Some(rows)
+        });
+        Ok(NoisyRates {
+            rows: rows?,
             size,
             seed,
             is_given: given.is_some(),
             is_weighted: model.shapes().iter().any(|shape| shape.weight > 1),
-        };
-        watched((all, "touches"), asked.table.quiet, cx, |progress| {
-            for (dead, value) in dead
-                .iter()
-                .flat_map(|dead| noises.iter().map(move |own| (*dead, *own)))
-            {
-                let noise = Noise::new(value).ok()?;
-                let mut touches = NoisyTouches::new(size, noise, each, seed);
-                touches.random_dead = dead;
-                let rate = match &given {
-                    None => model.recognition_rate(&touches, &noise, progress),
-                    Some(given) => given.rate(model, &touches, progress),
-                };
-                rates.rows.push(NoiseRow {
-                    noise: value,
-                    dead,
-                    rate: rate?,
-                });
-            }
-            Some(rates)
         })
     }
 }
 
-/// A note about the shapes whose imprints do not all fit on the matrix, with the share of their poses; None if all fit.
-fn left_out(model: &Model, size: MatrixSize) -> Option<String> {
-    let too_large = model.poses_too_large(size);
-    let shapes = model.shapes().iter().zip(too_large);
-    let parts = shapes
+/// Names the shapes whose imprints do not all fit on the matrix.
+fn note_left_out(model: &Model, size: MatrixSize, cx: &Context) {
+    let shapes = model.shapes().iter().zip(model.poses_too_large(size));
+    let shapes = shapes
         .filter(|(_, poses)| *poses > 0)
         .map(|(shape, poses)| {
             let part = percent(share(poses.into(), model.poses().into()));
             format!("{part} of the poses of {}", shape.name)
         });
-    let parts: Vec<String> = parts.collect();
-    let text = || {
-        format!(
-            "left out, because they do not fit on {size}: {}",
-            parts.join(", ")
-        )
-    };
-    (!parts.is_empty()).then(text)
+    let shapes = shapes.collect::<Vec<_>>().join(", ");
+    if !shapes.is_empty() {
+        cx.note(&format!(
+            "left out, because they do not fit on {size}: {shapes}"
+        ));
+    }
 }
 
 pub(super) struct NoisyRates {
-    rows: Vec<NoiseRow>,
+    /// The noise, the number of dead taxels, and how often a touch is named right.
+    rows: Vec<(f64, u32, RecognitionRate)>,
     size: MatrixSize,
     seed: u64,
     is_given: bool,
     is_weighted: bool,
 }
 
-struct NoiseRow {
-    noise: f64,
-    dead: u32,
-    rate: RecognitionRate,
-}
-
 impl NoisyRates {
     /// A curve of the touches that are named right, for each number of dead taxels.
     fn curves(&self) -> Vec<(u32, Vec<(f64, f64)>)> {
-        let groups = self.rows.chunk_by(|one, other| one.dead == other.dead);
-        let points = |rows: &[NoiseRow]| {
-            let points = rows.iter().map(|row| (row.noise, row.rate.accuracy));
-            (rows[0].dead, points.collect())
+        let groups = self.rows.chunk_by(|one, other| one.1 == other.1);
+        let curves = groups.map(|rows| {
+            let points = rows.iter().map(|(noise, _, rate)| (*noise, rate.accuracy));
+            (rows[0].1, points.collect())
+        });
+        curves.collect()
+    }
+
+    fn records(&self) -> Vec<Record> {
+        let record = |(noise, dead, rate): &(f64, u32, RecognitionRate)| {
+            Record(vec![
+                ("noise", json!(noise)),
+                ("dead", json!(dead)),
+                ("touches", json!(Count(rate.weighted_touches))),
+                ("right", json!(Count(rate.weighted_right))),
+                ("accuracy", json!(rate.accuracy)),
+                ("standard_error", json!(rate.standard_error)),
+                ("claimed", json!(rate.mean_confidence)),
+                ("held", json!(rate.held_share)),
+            ])
         };
-        groups.map(points).collect()
+        self.rows.iter().map(record).collect()
     }
 }
 
@@ -195,81 +195,170 @@ impl Table for NoisyRates {
     fn text(&self, charset: Charset) -> String {
         const BAR: usize = 30;
         let mut rows = vec![row(["noise", "dead", "right", "held", "claimed"])];
-        for NoiseRow { noise, dead, rate } in &self.rows {
-            let error = 100.0 * rate.standard_error;
-            rows.push(vec![
-                noise.to_string(),
-                dead.to_string(),
-                format!("{} ± {error:.1}", percent(rate.accuracy)),
-                percent(rate.held_share),
-                percent(rate.mean_confidence),
-                bar(rate.accuracy, BAR, charset),
-            ]);
+        for (noise, dead, rate) in &self.rows {
+            let (right, error) = (percent(rate.accuracy), 100.0 * rate.standard_error);
+            rows.push(row([
+                &noise.to_string(),
+                &dead.to_string(),
+                &format!("{right} ± {error:.1}"),
+                &percent(rate.held_share),
+                &percent(rate.mean_confidence),
+                &bar(rate.accuracy, BAR, charset),
+            ]));
         }
-        let touches = self.rows.first().map_or(0, |row| row.rate.touches);
+        let touches = self.rows.first().map_or(0, |(_, _, rate)| rate.touches);
+        let (touches, seed) = (counted(touches, "touch"), self.seed);
         let held = match self.is_given {
             true => "values some shape has",
             false => "imprint some shape leaves",
         };
         let mut text = table(&rows, &[5], charset);
         text += &format!(
-            "{} a row, seed {}\nheld: touches whose {held} without noise, too\n\
+            "{touches} a row, seed {seed}\nheld: touches whose {held} without noise, too\n\
              claimed: the mean probability of the answers\n{}",
-            counted(touches, "touch"),
-            self.seed,
             if self.is_weighted { WEIGHTED } else { "" },
         );
         for (dead, points) in self.curves() {
-            let curve = plot::lines("right", "noise", &points, charset);
-            text += &match (curve.is_empty(), dead) {
-                (true, _) => continue,
-                (false, 0) => format!("\n{curve}"),
-                (false, dead) => format!("\n{}\n{curve}", counted(dead, "dead taxel")),
-            };
+            let dead = counted(dead, "dead taxel");
+            match plot::lines("right", "noise", &points, charset) {
+                none if none.is_empty() => {}
+                curve => text += &format!("\n{dead}\n{curve}"),
+            }
         }
         text
     }
 
     fn csv(&self) -> String {
-        let mut text =
-            String::from("noise,dead,touches,right,accuracy,standard_error,claimed,held\n");
-        for NoiseRow { noise, dead, rate } in &self.rows {
-            let (touches, right) = (rate.weighted_touches, rate.weighted_right);
-            let (accuracy, error) = (rate.accuracy, rate.standard_error);
-            let (claimed, held) = (rate.mean_confidence, rate.held_share);
-            text +=
-                &format!("{noise},{dead},{touches},{right},{accuracy},{error},{claimed},{held}\n");
-        }
-        text
+        csv(&self.records())
     }
 
     fn json(&self) -> String {
-        let rows = self.rows.iter().map(|NoiseRow { noise, dead, rate }| {
-            json!({
-                "noise": noise,
-                "dead": dead,
-                "touches": Count(rate.weighted_touches),
-                "right": Count(rate.weighted_right),
-                "accuracy": rate.accuracy,
-                "standard_error": rate.standard_error,
-                "claimed": rate.mean_confidence,
-                "held": rate.held_share,
-            })
-        });
         let answer = json!({
             "columns": self.size.columns(),
             "rows": self.size.rows(),
             "seed": self.seed,
-            "degradation": rows.collect::<Vec<_>>(),
+            "degradation": self.records(),
         });
         json::text(&answer) + "\n"
     }
 
     fn svg(&self) -> Option<String> {
-        let mut plot = Plot::from_zero("noise", "right");
-        for (dead, points) in self.curves() {
-            plot = plot.with_curve(&counted(dead, "dead taxel"), &points);
-        }
+        let curves = self.curves().into_iter();
+        let plot = curves.fold(Plot::from_zero("noise", "right"), |plot, (dead, points)| {
+            plot.with_curve(&counted(dead, "dead taxel"), &points)
+        });
         Some(plot.svg())
     }
+}
+
+/// The length of each run is kept until the mean is known: up to 120 MB.
+const MOST_RUNS: u64 = 10_000_000;
+
+const EXAMPLES: &str = "\
+Touches each shape again and again in random poses, and multiplies the
+probabilities until one shape reaches that of --until. Prints the mean number of
+touches and its standard error; the same seed gives the same numbers. If a run
+does not get there in 10,000 touches, it ends, and its shape has no mean.
+
+Examples:
+  taxel model touches parts
+  taxel model touches parts --until 0.999 --runs 200 --seed 7 --json";
+
+/// Simulate how many touches it takes to name a shape
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Touches {
+    /// Name of a model, or its file
+    #[arg(value_name = "MODEL", value_parser = name_or_path())]
+    model: OsString,
+    /// How probable one shape must be (0 to 1); default 0.99
+    #[arg(long, value_name = "P", value_parser = parse_probability)]
+    until: Option<f64>,
+    /// Runs of each shape; default 10000
+    #[arg(long, value_name = "N", value_parser = whole(1..=MOST_RUNS))]
+    runs: Option<u64>,
+    /// Seed of the random numbers; default 0
+    #[arg(long, value_name = "N", value_parser = whole::<u64>(0..))]
+    seed: Option<u64>,
+    /// Print JSON, one line per answer
+    #[arg(long)]
+    json: bool,
+    /// Show no progress and no notes
+    #[arg(long)]
+    quiet: bool,
+}
+
+impl Touches {
+    pub(super) fn run(self, cx: &Context) -> Result<(), Failure> {
+        let (until, runs) = (self.until.unwrap_or(0.99), self.runs.unwrap_or(10_000));
+        let seed = self.seed.unwrap_or_default();
+        let model = ready(find(&self.model, &cx.shelf)?, self.quiet, cx.charset)?;
+        let shapes = model.shapes();
+        let all = (runs * shapes.len() as u64, "runs");
+        let results = watched(all, self.quiet, cx, |progress| {
+            model.touches_until(until, runs, seed, progress)
+        })?;
+        let weights: Vec<u32> = shapes.iter().map(|shape| shape.weight).collect();
+        let (mean, error) = mean(&weights, &results);
+        let named = shapes.iter().map(|shape| &*shape.name).zip(&results);
+        if self.json {
+            let answer = json!({
+                "until": until,
+                "seed": seed,
+                "mean": mean,
+                "standard_error": error,
+                "shapes": named.map(record).collect::<Vec<_>>(),
+            });
+            return cx.print(&(json::ascii(&answer) + "\n"));
+        }
+        let shape = |(name, own): (&str, &TouchesUntil)| {
+            cells(name, (own.mean, own.standard_error), own.runs - own.reached)
+        };
+        let mut rows: Vec<_> = named.map(shape).collect();
+        rows.push(cells("all shapes", (mean, error), 0));
+        let (until, runs) = (percent(until), counted(runs, "run"));
+        let title =
+            format!("touches until a shape is {until} probable; {runs} each, seed {seed}\n");
+        cx.print(&(title + &table(&rows, &[0, 2, 3], cx.charset)))
+    }
+}
+
+fn record((name, own): (&str, &TouchesUntil)) -> Record {
+    Record(vec![
+        ("name", json!(name)),
+        ("mean", json!(own.mean)),
+        ("standard_error", json!(own.standard_error)),
+        ("reached", json!(own.reached)),
+        ("runs", json!(own.runs)),
+        ("right", json!(own.right)),
+    ])
+}
+
+/// The mean, its standard error and the number of runs given up.
+fn cells(name: &str, (mean, error): Mean, given_up: u64) -> Vec<String> {
+    let mean = mean.map_or("–".to_owned(), |mean| format!("{mean:.2}"));
+    let error = error.map_or(String::new(), |error| format!("± {error:.2}"));
+    let most = grouped(MOST_TOUCHES);
+    let note = match given_up {
+        0 => String::new(),
+        runs => format!("{} took more than {most} touches", counted(runs, "run")),
+    };
+    row([&format!("  {name}"), &mean, &error, &note])
+}
+
+/// A mean and its standard error.
+type Mean = (Option<f64>, Option<f64>);
+
+/// The mean of the shapes' means by their weights. Their runs are independent, so the variances add up. None if a shape
+/// has no mean.
+fn mean(weights: &[u32], results: &[TouchesUntil]) -> Mean {
+    let sum: f64 = weights.iter().copied().map(f64::from).sum();
+    let shapes = || weights.iter().copied().map(f64::from).zip(results);
+    let means = shapes().map(|(weight, own)| Some(weight * own.mean?));
+    let variances = shapes().map(|(weight, own)| Some((weight * own.standard_error?).powi(2)));
+    let (mean, variance): (Option<f64>, Option<f64>) = (means.sum(), variances.sum());
+    (
+        mean.map(|all| all / sum),
+        variance.map(|all| all.sqrt() / sum),
+    )
 }

@@ -3,19 +3,17 @@
 //!
 //! For each threshold, sizes are tried from the smallest on. Each is a training of its own, on the smallest sensor that
 //! holds all shapes. With `--want ERROR`, the first size that reaches the error is then refined: sizes between it and
-//! the last one that does not are tried. Sizes at which no sensor holds the shapes are left out, and standard error
-//! names them. Errors are reported before the first training where possible.
+//! the last one that does not are tried. Errors are reported before the first training where possible.
 
 use std::ffi::{OsStr, OsString};
 
 use clap::ArgGroup;
 use serde::Serialize;
-use taxel_core::parameter::number::short as shortest;
+use serde_json::{Value, json};
+use taxel_core::parameter::number;
 use taxel_core::pose::{Axis, DecimalRange};
-use taxel_core::quote::shortened_message;
 use taxel_core::recognition::{
-    CellPositions, GridSteps, Model, Separation, SeparationPoint, SizeAxis, SmallestSize,
-    TrainingError,
+    CellPositions, Model, Separation, SeparationPoint, SizeAxis, SmallestSize, TrainingError,
 };
 use taxel_core::sensor::Sensor;
 use taxel_files::formats::file::has_ending;
@@ -28,16 +26,16 @@ use crate::cli::Context;
 use crate::cli::arguments::flags::{parse_probability, whole};
 use crate::cli::arguments::parameters::parse_range;
 use crate::cli::commands::model::{
-    SetFlags, Table, TableFlags, find, models, parse_positions, ready, trained,
+    SetFlags, Table, TableFlags, find, models, positions, ready, trained,
 };
 use crate::cli::failure::{Failure, Named};
 use crate::cli::input::shapes;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::Count;
 use crate::cli::output::plot;
-use crate::cli::output::table::{row, table};
+use crate::cli::output::table::{Record, csv, row, table};
 
-/// The sizes that a search for the wanted error tries.
+/// The most sizes that a search for the wanted error tries.
 const REFINED: u64 = 9;
 
 const EXAMPLES: &str = "\
@@ -46,6 +44,8 @@ the share of touches that even the best classifier names wrong. A scale
 multiplies all lengths. With --pitch, lengths are in mm, and a taxel of a stored
 shape is 1 mm; the shape's own pitch and threshold are ignored. Sizes at which
 the shapes do not fit on 64 x 64 taxels are left out; standard error lists them.
+Of a model, the shapes, the angles, the threshold and, if they fill one cell,
+the positions are taken; its zooms and its sensor are not.
 
 'imprints' counts the distinct imprints up to shifts, and 'sensor' is the
 smallest that holds the shapes, at least 16 x 16. With --csv and --json they are
@@ -68,50 +68,28 @@ Examples:
 #[command(
     after_help = EXAMPLES,
     override_usage = "taxel model separate [OPTIONS] <--scale|--pitch|--threshold> [MODEL]...",
-    group = ArgGroup::new("axes")
-        .args(["range_scale", "range_pitch", "range_threshold"])
-        .multiple(true)
-        .required(true),
-    mut_arg("set", |set| {
-        set.value_name("MODEL|FILE.jsonl|NAME")
-            .help("A model, or shapes as for 'taxel model train'")
-    }),
+    group = ArgGroup::new("axes").args(AXES).multiple(true).required(true),
+    mut_arg("set", |set| set.value_name("MODEL|FILE.jsonl|NAME").help(SET)),
 )]
-pub(super) struct Separate {
+pub(crate) struct Separate {
     #[command(flatten)]
     set: SetFlags,
     /// Multiply all lengths by this; one of --scale, --pitch and --threshold is required
-    #[arg(id = "range_scale", long = "scale", value_name = "RANGE", value_parser = parse_range)]
+    #[arg(id = AXES[0], long = "scale", value_name = "RANGE", value_parser = parse_range)]
     scale: Option<DecimalRange>,
     /// Pitch in mm; lengths are in mm, too
-    #[arg(
-        id = "range_pitch",
-        long = "pitch",
-        value_name = "RANGE",
-        value_parser = parse_range,
-        conflicts_with = "range_scale"
-    )]
+    #[arg(id = AXES[1], long = "pitch", value_name = "RANGE", value_parser = parse_range)]
+    #[arg(conflicts_with = AXES[0])]
     pitch: Option<DecimalRange>,
     /// Threshold; default the model's, or 0.5
-    #[arg(
-        id = "range_threshold",
-        long = "threshold",
-        value_name = "RANGE",
-        value_parser = parse_range
-    )]
+    #[arg(id = AXES[2], long = "threshold", value_name = "RANGE", value_parser = parse_range)]
     threshold: Option<DecimalRange>,
-    /// Angle, in degrees; default that of the model, or 0:359:1
-    #[arg(
-        id = "range_angle",
-        long = "angle",
-        value_name = "START:END:STEP",
-        value_parser = parse_range,
-        allow_hyphen_values = true,
-        help_heading = "Grid"
-    )]
+    /// Rotation about the centre, in degrees; default that of the model, or 0:359:1
+    #[arg(id = "range_angle", long = "angle", value_name = "START:END:STEP")]
+    #[arg(value_parser = parse_range, allow_hyphen_values = true, help_heading = "Grid")]
     angle: Option<DecimalRange>,
     /// Positions per cell along x and y; default those of the model, or 100
-    #[arg(long, value_name = "N", value_parser = parse_positions, help_heading = "Grid")]
+    #[arg(long, value_name = "N", value_parser = positions, help_heading = "Grid")]
     positions: Option<CellPositions>,
     /// Find the smallest scale, or the coarsest pitch, with at most this error (0 to 1)
     #[arg(long, value_name = "ERROR", value_parser = parse_probability)]
@@ -123,30 +101,50 @@ pub(super) struct Separate {
     table: TableFlags,
 }
 
+const SET: &str = "A model, or shapes as for 'taxel model train'";
+
+/// The ids of the flags of sizes. Those of a sensor's own flags, which take a number, are other ones.
+const AXES: [&str; 3] = ["range_scale", "range_pitch", "range_threshold"];
+
 impl Separate {
     pub(super) fn run(self, cx: &Context) -> Result<(), Failure> {
         self.check()?;
         let (separation, usual) = self.separation(cx)?;
-        let thresholds: Vec<f64> = match &self.threshold {
-            Some(range) => range.values().collect(),
-            None => vec![usual],
+        let thresholds = self
+            .threshold
+            .map_or(vec![usual], |range| range.values().collect());
+        let (axis, range) = match self.pitch {
+            Some(pitch) => (SizeAxis::Pitch, pitch),
+            None => (
+                SizeAxis::Scale,
+                self.scale.unwrap_or(DecimalRange::whole(1)),
+            ),
         };
-        let (axis, range) = self.axis();
-        let all = axis.smallest_first(&range);
-        let sizes = fitting(axis, &all, &separation, &thresholds)?;
+        let (mut sizes, mut left_out) = (Vec::new(), Vec::new());
+        for size in axis.smallest_first(&range) {
+            let fits = thresholds.iter().try_fold(true, |fits, threshold| {
+                match separation.training(axis.scale(size), *threshold) {
+                    Err(TrainingError::Large) => Ok(false),
+                    Err(error) => {
+                        Err(error).named(format!("{} {size}, threshold {threshold}", axis.name()))
+                    }
+                    Ok(_) => Ok(fits),
+                }
+            })?;
+            if fits { &mut sizes } else { &mut left_out }.push(size);
+        }
         self.table.check()?;
-        let left_out: Vec<String> = (all.iter().filter(|size| !sizes.contains(size)))
-            .map(f64::to_string)
-            .collect();
-        let left_out = match &left_out[..] {
-            [] => None,
-            [only] => Some(only.clone()),
-            [first, .., last] => Some(format!("{first} to {last}")),
-        };
-        // An answer without all its sizes says so, even with --quiet.
-        if let Some(left_out) = left_out {
-            let (name, reason) = (axis.name(), TrainingError::Large);
-            cx.note(&format!("left out: {name} {left_out}: {reason}"));
+        if let (Some(first), Some(last)) = (left_out.first(), left_out.last()) {
+            let sizes_left = match first == last {
+                true => first.to_string(),
+                false => format!("{first} to {last}"),
+            };
+            let text = format!("{} {sizes_left}: {}", axis.name(), TrainingError::Large);
+            if sizes.is_empty() {
+                return Err(Failure::new(text));
+            }
+            // An answer without all its sizes says so, even with --quiet.
+            cx.note(&format!("left out: {text}"));
         }
         let more = self.want.map_or(0, |_| REFINED);
         let points = (sizes.len() as u64 + more) * thresholds.len() as u64;
@@ -160,19 +158,16 @@ impl Separate {
                     Some(error) => separation.smallest(axis, &points, error, progress)?,
                     None => None,
                 };
-                Ok(Curve {
-                    threshold,
-                    points,
-                    smallest,
-                })
+                Ok((threshold, points, smallest))
             };
             thresholds.iter().map(curve).collect()
         })?;
+        let (step, wanted) = (range.step(), self.want);
         let curves = Curves {
             axis,
-            step: range.step(),
+            step,
             curves,
-            wanted: self.want,
+            wanted,
         };
         if self.table.csv {
             // The table has no place for the result of --want. It is an answer, not a note, so --quiet does not
@@ -192,7 +187,7 @@ impl Separate {
                 .iter()
                 .flat_map(|range| [range.value(0), range.last()]);
             if let Some(value) = ends.find(|&value| value <= 0.0 || value > most) {
-                let value = shortest(value);
+                let value = number::short(value);
                 let text = format!("--{flag} {value} is out of range (allowed: {allowed})");
                 return Err(Failure::new(text));
             }
@@ -200,66 +195,33 @@ impl Separate {
         Ok(())
     }
 
-    /// The sizes; a scale of 1 if none are given.
-    fn axis(&self) -> (SizeAxis, DecimalRange) {
-        let scale = self.scale.unwrap_or(DecimalRange::whole(1));
-        self.pitch
-            .map_or((SizeAxis::Scale, scale), |pitch| (SizeAxis::Pitch, pitch))
-    }
-
-    /// The set, and the threshold that it has been touched with.
+    /// The set, and the threshold if none is given.
     fn separation(&self, cx: &Context) -> Result<(Separation, f64), Failure> {
         let what = &self.set.what;
-        if let ([model], false) = (&what[..], self.set.library_all)
-            && is_model(model, cx)
-        {
-            let model = ready(find(model, &cx.shelf)?, self.table.quiet, cx.charset)?;
-            if !self.table.quiet {
-                self.departures(&model).for_each(|text| cx.note(text));
+        let (mut separation, threshold) = match &what[..] {
+            [model] if !self.set.library_all && is_model(model, cx) => {
+                let model = ready(find(model, &cx.shelf)?, self.table.quiet, cx.charset)?;
+                let mut separation = Separation::new(model.shapes().to_vec())?;
+                separation.steps.angles = model.ranges()[Axis::Angle];
+                separation.steps.positions = positions_of(&model).unwrap_or(CellPositions::FINE);
+                (separation, model.sensor().threshold())
             }
-            let positions = self.positions.or_else(|| positions_of(&model));
-            let mut separation = Separation::new(model.shapes().to_vec())?;
-            separation.steps = GridSteps {
-                positions: positions.unwrap_or(CellPositions::FINE),
-                angles: self.angle.unwrap_or(model.ranges()[Axis::Angle]),
-            };
-            return Ok((separation, model.sensor().threshold()));
-        }
-        let no_shape = |name: &str| cx.shelf.imprint(name).is_err();
-        let is_only_model =
-            |what: &&OsString| is_model(what, cx) && what.to_str().is_none_or(no_shape);
-        if let Some(model) = what.iter().find(is_only_model) {
-            let name = shortened_message(&model.to_string_lossy());
-            let text = "a model; give one model or several shapes, not both";
-            return Err(Failure::new(format!("{name}: {text}")));
-        }
-        let mut separation = Separation::new(shapes::read_set(&self.set, &cx.shelf)?)?;
+            _ => {
+                let no_shape = |name: &str| cx.shelf.imprint(name).is_err();
+                let is_only_model =
+                    |what: &&OsString| is_model(what, cx) && what.to_str().is_none_or(no_shape);
+                if let Some(model) = what.iter().find(is_only_model) {
+                    let text = "a model; give one model or several shapes, not both";
+                    return Err(Failure::new(text)).named(model.display());
+                }
+                let shapes = shapes::read_set(&self.set, &cx.shelf)?;
+                (Separation::new(shapes)?, Sensor::default().threshold())
+            }
+        };
         let steps = &mut separation.steps;
         steps.angles = self.angle.unwrap_or(steps.angles);
         steps.positions = self.positions.unwrap_or(steps.positions);
-        Ok((separation, Sensor::default().threshold()))
-    }
-
-    /// What of a model is not kept.
-    fn departures(&self, model: &Model) -> impl Iterator<Item = &'static str> {
-        let is_zoomed = |axis| model.ranges()[axis] != DecimalRange::whole(1);
-        let notes = [
-            (
-                is_zoomed(Axis::ZoomX) || is_zoomed(Axis::ZoomY),
-                "the zooms of the model are left out",
-            ),
-            (
-                model.cut().iter().any(|&cut| cut > 0),
-                "the model's sensor cuts poses off; each size here has a sensor that does not",
-            ),
-            (
-                self.positions.is_none() && positions_of(model).is_none(),
-                "the positions of the model are not one cell; here they are 100 × 100 in a cell",
-            ),
-        ];
-        notes
-            .into_iter()
-            .filter_map(|(differs, text)| differs.then_some(text))
+        Ok((separation, threshold))
     }
 }
 
@@ -284,44 +246,8 @@ fn positions_of(model: &Model) -> Option<CellPositions> {
     (x == y).then_some(x)
 }
 
-/// The sizes at which a sensor holds the shapes. It is an error if there is none.
-fn fitting(
-    axis: SizeAxis,
-    sizes: &[f64],
-    separation: &Separation,
-    thresholds: &[f64],
-) -> Result<Vec<f64>, Failure> {
-    let (mut fitting, mut too_large) = (Vec::new(), None);
-    for &size in sizes {
-        let at = |threshold: f64| (separation.training(axis.scale(size), threshold), threshold);
-        let refused = thresholds.iter().map(|&threshold| at(threshold));
-        let refused =
-            refused.filter_map(|(training, threshold)| Some((training.err()?, threshold)));
-        match refused.into_iter().next() {
-            None => fitting.push(size),
-            Some((error, threshold)) => {
-                let is_large = error == TrainingError::Large;
-                let place = format!("{} {size}, threshold {threshold}", axis.name());
-                let refused = Err(error).named(place);
-                if !is_large {
-                    return refused;
-                }
-                too_large.get_or_insert(refused);
-            }
-        }
-    }
-    too_large
-        .filter(|_| fitting.is_empty())
-        .unwrap_or(Ok(fitting))
-}
-
-/// The limit of one touch at each size, for one threshold.
-struct Curve {
-    threshold: f64,
-    points: Vec<SeparationPoint>,
-    /// The smallest size that reaches the wanted error; None if none does, or none is wanted.
-    smallest: Option<SmallestSize>,
-}
+/// A threshold, the limit of one touch at each size, and the smallest size that reaches the wanted error, if any does.
+type Curve = (f64, Vec<SeparationPoint>, Option<SmallestSize>);
 
 struct Curves {
     axis: SizeAxis,
@@ -337,14 +263,36 @@ fn short(value: f64) -> String {
 
 impl Curves {
     fn points(&self) -> impl Iterator<Item = &SeparationPoint> {
-        self.curves.iter().flat_map(|curve| &curve.points)
+        self.curves.iter().flat_map(|(_, points, _)| points)
+    }
+
+    fn record(&self, point: &SeparationPoint) -> Record {
+        Record(vec![
+            (self.axis.name(), json!(point.value)),
+            ("threshold", json!(point.threshold)),
+            ("error", json!(point.error())),
+            ("touches", json!(Count(point.touches))),
+            ("right", json!(Count(point.right))),
+            ("certain", json!(Count(point.certain))),
+            ("keys", json!(point.keys)),
+            ("side", json!(point.side)),
+        ])
+    }
+
+    /// JSON has the scale of a pitch, too.
+    fn object(&self, point: &SeparationPoint) -> Record {
+        let mut record = self.record(point);
+        if self.axis == SizeAxis::Pitch {
+            record.0.insert(1, ("scale", json!(point.scale)));
+        }
+        record
     }
 
     /// The name of the horizontal axis of a plot, and its curves: over the sizes, or over the thresholds if there is
     /// only one size.
     fn plotted(&self) -> (&'static str, Vec<(String, Vec<(f64, f64)>)>) {
-        let name = self.axis.name();
-        if self.curves.iter().all(|curve| curve.points.len() == 1) && self.curves.len() > 1 {
+        let (name, several) = (self.axis.name(), self.curves.len() > 1);
+        if several && self.curves.iter().all(|(_, points, _)| points.len() == 1) {
             let points = self.points().map(|point| (point.threshold, point.error()));
             let size = self.points().next().map_or(0.0, |point| point.value);
             return (
@@ -352,15 +300,9 @@ impl Curves {
                 vec![(format!("{name} {}", short(size)), points.collect())],
             );
         }
-        let curves = self.curves.iter().map(|curve| {
-            let points = curve
-                .points
-                .iter()
-                .map(|point| (point.value, point.error()));
-            (
-                format!("threshold {}", short(curve.threshold)),
-                points.collect(),
-            )
+        let curves = self.curves.iter().map(|(threshold, points, _)| {
+            let points = points.iter().map(|point| (point.value, point.error()));
+            (format!("threshold {}", short(*threshold)), points.collect())
         });
         (name, curves.collect())
     }
@@ -377,15 +319,15 @@ impl Curves {
             SizeAxis::Pitch => ["pitch", "coarsest", "coarser", "finer", " mm"],
         };
         let mut text = String::new();
-        for curve in &self.curves {
+        for (threshold, points, smallest) in &self.curves {
             if self.curves.len() > 1 {
-                text += &format!("threshold {}: ", short(curve.threshold));
+                text += &format!("threshold {}: ", short(*threshold));
             }
             let Some(SmallestSize {
                 point,
                 step,
                 missed_again,
-            }) = &curve.smallest
+            }) = smallest
             else {
                 text += &format!("no {noun} that was tried has an error of at most {wanted}\n");
                 continue;
@@ -394,74 +336,24 @@ impl Curves {
             text += &format!(
                 "the {extreme} {noun} with an error of at most {wanted} is {size}{unit}: {error}\n"
             );
-            if curve.points.len() == 1 {
-                text += &format!("  no other {noun} was tried\n");
-                continue;
-            }
-            text += &if *step > 0.0 {
-                let (coarse, fine) = (short(self.step), short(*step));
-                format!(
-                    "  tried from the {extreme} on in steps of {coarse}{unit}, then in steps of {fine}{unit} just before the first that reaches it\n"
-                )
-            } else {
-                format!("  no {smaller} {noun} was tried; one may reach the error as well\n")
-            };
-            text += &match missed_again {
-                0 => format!("  every {larger} {noun} that was tried reaches it, too\n"),
-                &count => {
-                    let sizes = counted(count as u64, &format!("{larger} {noun}"));
-                    format!("  the error is not monotonic: it is too large again at {sizes}\n")
+            text += &match (points.len(), *step > 0.0) {
+                (1, _) => format!("  no other {noun} was tried\n"),
+                (_, false) => {
+                    format!("  no {smaller} {noun} was tried; one may reach the error as well\n")
+                }
+                (_, true) => {
+                    let (coarse, fine) = (short(self.step), short(*step));
+                    format!("  tried in steps of {coarse}{unit}, then in steps of {fine}{unit}\n")
                 }
             };
+            if *missed_again > 0 {
+                let sizes = counted(*missed_again as u64, &format!("{larger} {noun}"));
+                text +=
+                    &format!("  the error is not monotonic: it is too large again at {sizes}\n");
+            }
         }
         text
     }
-
-    fn point(&self, point: &SeparationPoint) -> PointJson {
-        PointJson {
-            pitch_mm: (self.axis == SizeAxis::Pitch).then_some(point.value),
-            scale: point.scale,
-            threshold: point.threshold,
-            error: point.error(),
-            touches: Count(point.touches),
-            right: Count(point.right),
-            certain: Count(point.certain),
-            keys: point.keys,
-            side: point.side,
-        }
-    }
-}
-
-#[derive(Serialize)]
-struct CurvesJson {
-    axis: &'static str,
-    points: Vec<PointJson>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    want: Option<Vec<FoundJson>>,
-}
-
-#[derive(Serialize)]
-struct PointJson {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pitch_mm: Option<f64>,
-    scale: f64,
-    threshold: f64,
-    error: f64,
-    touches: Count,
-    right: Count,
-    certain: Count,
-    keys: usize,
-    side: u8,
-}
-
-/// The result of a search; `smallest`, `step` and `missed_again` are null if no size reaches the error.
-#[derive(Serialize)]
-struct FoundJson {
-    threshold: f64,
-    error: f64,
-    smallest: Option<PointJson>,
-    step: Option<f64>,
-    missed_again: Option<usize>,
 }
 
 impl Table for Curves {
@@ -492,60 +384,49 @@ impl Table for Curves {
         let (name, curves) = self.plotted();
         for (title, points) in &curves {
             let curve = plot::lines("error", name, points, charset);
-            if !curve.is_empty() {
-                let title = if curves.len() > 1 {
-                    format!("{title}\n")
-                } else {
-                    String::new()
-                };
-                text += &format!("\n{title}{curve}");
-            }
+            let title = if curves.len() > 1 { title } else { "" };
+            text += &match (curve.is_empty(), title) {
+                (true, _) => curve,
+                (false, "") => format!("\n{curve}"),
+                (false, title) => format!("\n{title}\n{curve}"),
+            };
         }
-        let found = self.found();
-        let gap = if found.is_empty() { "" } else { "\n" };
-        text + gap + &charset.lines(&found)
+        match self.found() {
+            none if none.is_empty() => text,
+            found => text + "\n" + &found,
+        }
     }
 
     fn csv(&self) -> String {
-        let name = self.axis.name();
-        let mut text = format!("{name},threshold,error,touches,right,certain,keys,side\n");
-        for point in self.points() {
-            let (size, threshold, error) =
-                (short(point.value), short(point.threshold), point.error());
-            let SeparationPoint {
-                touches,
-                right,
-                certain,
-                keys,
-                side,
-                ..
-            } = point;
-            text +=
-                &format!("{size},{threshold},{error},{touches},{right},{certain},{keys},{side}\n");
-        }
-        text
+        let records = self.points().map(|point| self.record(point));
+        csv(&records.collect::<Vec<_>>())
     }
 
+    /// With `--want`, `smallest`, `step` and `missed_again` are null if no size reaches the error.
     fn json(&self) -> String {
-        let found = |error: f64, curve: &Curve| FoundJson {
-            threshold: curve.threshold,
-            error,
-            smallest: curve.smallest.as_ref().map(|own| self.point(&own.point)),
-            step: curve.smallest.as_ref().map(|own| own.step),
-            missed_again: curve.smallest.as_ref().map(|own| own.missed_again),
-        };
-        let found = |error| {
-            self.curves
-                .iter()
-                .map(|curve| found(error, curve))
-                .collect()
-        };
-        let answer = CurvesJson {
-            axis: self.axis.name(),
-            points: self.points().map(|point| self.point(point)).collect(),
-            want: self.wanted.map(found),
-        };
-        json::text(&answer) + "\n"
+        #[derive(Serialize)]
+        struct Answer {
+            axis: &'static str,
+            points: Vec<Record>,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            want: Option<Vec<Value>>,
+        }
+        let want = self.wanted.map(|error| {
+            let found = self.curves.iter().map(|(threshold, _, found)| {
+                let found = found.as_ref();
+                json!({
+                    "threshold": threshold,
+                    "error": error,
+                    "smallest": found.map(|own| self.object(&own.point)),
+                    "step": found.map(|own| own.step),
+                    "missed_again": found.map(|own| own.missed_again),
+                })
+            });
+            found.collect()
+        });
+        let points = self.points().map(|point| self.object(point));
+        let (axis, points) = (self.axis.name(), points.collect());
+        json::text(&Answer { axis, points, want }) + "\n"
     }
 
     /// The wanted error is a line as long as the curves.
@@ -557,14 +438,13 @@ impl Table for Curves {
             name
         };
         let mut plot = Plot::from_zero(name, "error");
-        let (mut first, mut last) = (f64::INFINITY, 0.0_f64);
         for (title, points) in &curves {
             plot = plot.with_curve(title, points);
-            for &(x, _) in points {
-                (first, last) = (first.min(x), last.max(x));
-            }
         }
         if let Some(wanted) = self.wanted {
+            let points = || curves.iter().flat_map(|(_, points)| points);
+            let first = points().fold(f64::INFINITY, |least, point| least.min(point.0));
+            let last = points().fold(0.0, |most: f64, point| most.max(point.0));
             let line = [(first, wanted), (last, wanted)];
             plot = plot.with_curve(&format!("wanted {}", short(wanted)), &line);
         }

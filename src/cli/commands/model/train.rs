@@ -17,9 +17,7 @@ use crate::cli::Context;
 use crate::cli::arguments::flags::{TOO_LITTLE_MEMORY, one_of, parse_shard, whole};
 use crate::cli::arguments::parameters::{FittingSensorFlags, RangeFlags};
 use crate::cli::commands::model::keeping::card;
-use crate::cli::commands::model::{
-    SetFlags, existing, folder, model_file, parse_positions, trained,
-};
+use crate::cli::commands::model::{SetFlags, existing, folder, model_file, positions, trained};
 use crate::cli::failure::Failure;
 use crate::cli::input::shapes;
 use crate::cli::output::charset::note;
@@ -48,7 +46,7 @@ Examples:
     override_usage = "taxel model train [OPTIONS] <--out FILE|--name NAME> [FILE|NAME]...",
     group = ArgGroup::new("target").args(["out", "name"]).required(true),
 )]
-pub(super) struct Train {
+pub(crate) struct Train {
     #[command(flatten)]
     set: SetFlags,
     /// Write the model to this file
@@ -60,16 +58,11 @@ pub(super) struct Train {
     #[command(flatten)]
     ranges: RangeFlags,
     /// Positions per cell along x and y; default 100
-    #[arg(long, value_name = "N", value_parser = parse_positions, help_heading = "Grid")]
+    #[arg(long, value_name = "N", value_parser = positions, help_heading = "Grid")]
     positions: Option<CellPositions>,
     /// Point that x0 and y0 place: corner or centre; default corner with --x0 or --y0, else centre
-    #[arg(
-        long,
-        value_name = "POINT",
-        value_parser = one_of::<Anchor, _>(Anchor::NAMES),
-        hide_possible_values = true,
-        help_heading = "Grid"
-    )]
+    #[arg(long, value_name = "POINT", value_parser = one_of::<Anchor, _>(Anchor::NAMES))]
+    #[arg(hide_possible_values = true, help_heading = "Grid")]
     anchor: Option<Anchor>,
     #[command(flatten)]
     sensor: FittingSensorFlags,
@@ -108,9 +101,8 @@ impl Train {
         let existing = existing(self.force);
         match (&self.name, &self.out) {
             (Some(name), _) => folder(&cx.shelf)?.check(name, existing)?,
-            (None, out) => out
-                .iter()
-                .try_for_each(|path| check_writable(path, existing))?,
+            (None, Some(path)) => check_writable(path, existing)?,
+            (None, None) => {}
         }
         let memory = MemoryGuard::new(self.memory, TOO_LITTLE_MEMORY);
         let by = (self.jobs, memory, self.quiet);
@@ -122,29 +114,24 @@ impl Train {
         })?;
         let written = match (self.name, self.out) {
             (Some(name), _) => folder(&cx.shelf)?.save(&model, &name, existing),
-            (None, out) => {
-                let path = out.unwrap_or_default();
+            (None, path) => {
+                let path = path.unwrap_or_default();
                 save_model(&model, &path, existing).map(|()| path)
             }
         };
         // The work is not lost if the file cannot be written.
         let file = written.as_ref().ok().map(|path| path.to_string_lossy());
         let limit = Evaluation::of(&model);
-        if self.json {
+        let text = if self.json {
             let mut card = card(&model, &limit);
-            if let Some(file) = file {
-                card["file"] = file.into();
-            }
-            cx.print(&(json::ascii(&card) + "\n"))?;
+            card["file"] = file.into();
+            json::ascii(&card) + "\n"
         } else {
-            let file = file
-                .filter(|_| !self.quiet)
-                .map(|file| format!("written: {file}"));
-            let said = file.map_or(String::new(), |file| {
-                format!("{}\n", cx.charset.line(&file))
-            });
-            cx.print(&(said + &evaluation::summary(&limit, NamedBy::Imprint)))?;
-        }
+            let file = file.filter(|_| !self.quiet);
+            let file = file.map(|file| format!("written: {}\n", cx.charset.line(&file)));
+            file.unwrap_or_default() + &evaluation::summary(&limit, NamedBy::Imprint)
+        };
+        cx.print(&text)?;
         written?;
         Ok(())
     }
@@ -182,8 +169,7 @@ impl Train {
         };
         check_given(given, &sides.largest())?;
         let sources: Vec<&Source> = shapes.iter().map(|shape| &shape.source).collect();
-        let reach = Reach::of_all(sources.iter().copied(), anchor, given);
-        let reach = reach?;
+        let reach = Reach::of_all(sources.iter().copied(), anchor, given)?;
         let step = self.positions.unwrap_or(CellPositions::FINE).step();
         let (sensor, ranges) = reach.best_sensor(&sources, given, sides, step);
         Ok((self.sensor.sensor(sensor)?, anchor, ranges))
