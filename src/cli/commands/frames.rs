@@ -4,8 +4,9 @@
 //! after a tare. So memory does not grow with its length. A damage does not stop the command at once: everything before
 //! it is listed or answered, then it is reported as the error.
 
+use std::cell::RefCell;
 use std::fmt::Display;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, StdoutLock, Write};
 use std::ops::{ControlFlow, Range};
 use std::path::PathBuf;
 
@@ -160,12 +161,8 @@ impl Frames {
     /// If an error occurs, the answers made before it are still printed.
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
         let kept = self.keep.kept(self.json)?;
-        if self.all
-            && kept
-                .export
-                .as_ref()
-                .is_some_and(|export| export.path.is_none())
-        {
+        let to = kept.export.as_ref().map(|export| &export.path);
+        if self.all && to == Some(&None) {
             return Err(Failure::usage(
                 "the argument '--all' cannot be used with '--export -', which takes one frame; \
                  with a name each frame has a file of its own",
@@ -180,7 +177,6 @@ impl Frames {
         let namer = found
             .map(|found| found.ready(false, cx.charset))
             .transpose()?;
-        let mut output = BufWriter::new(io::stdout().lock());
         let answering = Answering {
             asked: &self,
             cx,
@@ -189,10 +185,11 @@ impl Frames {
             namer,
             pitch: self.pitch.pitch(&cx.settings)?.given,
             kept,
-            output: &mut output,
+            output: RefCell::new(BufWriter::new(io::stdout().lock())),
         };
         let done = answering.run(recording);
-        output.flush().map_err(Failure::of_output)?;
+        let flushed = answering.output.into_inner().flush();
+        flushed.map_err(Failure::of_output)?;
         done
     }
 }
@@ -210,41 +207,60 @@ struct Scan {
     misfit: Option<FrameError>,
 }
 
-#[derive(Debug, Default)]
+/// A channel, as it is listed.
+#[derive(Debug, Default, Serialize)]
 struct Channel {
-    info: ChannelInfo,
-    /// The size of the visible part of its frames.
-    seen: Option<FrameSize>,
+    name: Option<String>,
     frames: u64,
-    peak: Peak,
-    values: u64,
+    /// The size of the visible part of its frames.
+    rows: Option<u16>,
+    columns: Option<u16>,
     cells: usize,
+    unit: Option<String>,
+    start: Option<String>,
+    seconds_per_frame: Option<f64>,
+    pitch_mm: Option<[f64; 2]>,
+    threshold: Option<f64>,
+    peak: Option<u64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    marks: Vec<u64>,
+    #[serde(skip)]
+    info: ChannelInfo,
+    #[serde(skip)]
+    best: Peak,
+    /// The number of values of a frame.
+    #[serde(skip)]
+    values: u64,
     /// The least and the greatest label.
+    #[serde(skip)]
     labels: Option<(Label, Label)>,
-    times: Option<Times>,
-    marked: Vec<u64>,
-}
-
-/// The times at which frames were taken, in seconds.
-#[derive(Clone, Copy, Debug)]
-struct Times {
-    first: f64,
-    last: f64,
+    /// The frames with the label that is asked for.
+    #[serde(skip)]
+    labelled: Vec<u64>,
+    /// The first and the last time in seconds.
+    #[serde(skip)]
+    times: Option<(f64, f64)>,
     /// The first frame that is earlier than the one before it: a clock was set back, or the column is not a time.
+    #[serde(skip)]
     backwards: Option<u64>,
 }
 
+#[derive(Serialize)]
+struct ListJson<'a> {
+    /// Null if a damage comes before the format is certain.
+    format: Option<&'static str>,
+    channels: &'a [Channel],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    notes: &'a [String],
+}
+
 impl Scan {
-    fn of(recording: &mut RecordingFile, view: &View) -> Self {
+    fn of(recording: &mut RecordingFile, view: &View, label: Option<&Label>) -> Self {
         let mut scan = Self::default();
         let mut seen = Matrix::default();
         let result = recording.read(&mut |event| {
             match event {
-                RecordingEvent::Channel(info) => scan.channels.push(Channel {
-                    info: info.clone(),
-                    seen: info.size.map(|size| view.size(size).unwrap_or(size)),
-                    ..Channel::default()
-                }),
+                RecordingEvent::Channel(info) => scan.channels.push(Channel::new(info, view)),
                 RecordingEvent::Frame(frame) => {
                     let values = match view.apply_to(frame, &mut seen) {
                         Ok(()) => seen.values(),
@@ -256,7 +272,7 @@ impl Scan {
                         }
                     };
                     if let Some(channel) = scan.channels.get_mut(frame.channel) {
-                        channel.add(frame, values);
+                        channel.add(frame, values, label);
                     }
                 }
                 RecordingEvent::Note(note) if note.is_plain() => scan.plain.push(note.to_string()),
@@ -280,63 +296,53 @@ impl Scan {
 }
 
 impl Channel {
-    fn add(&mut self, frame: &Frame, values: &[f64]) {
-        let present = values.iter().filter(|value| !value.is_nan());
-        let cells = present.clone().count();
-        self.cells = self.cells.max(cells);
-        if cells > 0 {
-            self.peak.add(frame.number, Some(present.sum()));
-        }
-        if let Some(time) = frame.time {
-            let times = self.times.get_or_insert(Times {
-                first: time,
-                last: time,
-                backwards: None,
-            });
-            if time < times.last {
-                times.backwards.get_or_insert(frame.number);
-            }
-            times.last = time;
-        }
-        if let Some(label) = &frame.label {
-            let (least, greatest) = self
-                .labels
-                .get_or_insert_with(|| (label.clone(), label.clone()));
-            if label < least {
-                least.clone_from(label);
-            }
-            if label > greatest {
-                greatest.clone_from(label);
-            }
-        }
-        let number = frame.label.as_ref().and_then(Label::number);
-        let is_marked = |number| self.info.marks.iter().any(|mark| mark.number == number);
-        if number
-            .and_then(|number| u64::try_from(number).ok())
-            .is_some_and(is_marked)
-        {
-            self.marked.push(frame.number);
-        }
-        self.frames += 1;
-        self.values = self.info.values.unwrap_or(frame.values().len() as u64);
-    }
-
-    fn json(&self) -> ChannelJson<'_> {
-        let info = &self.info;
-        ChannelJson {
-            name: info.name.as_deref(),
-            frames: self.frames,
-            rows: self.seen.map(FrameSize::rows),
-            columns: self.seen.map(FrameSize::columns),
-            cells: self.cells,
-            unit: info.unit.as_deref(),
-            start: info.start.as_deref(),
+    fn new(info: &ChannelInfo, view: &View) -> Self {
+        let seen = info.size.map(|size| view.size(size).unwrap_or(size));
+        Self {
+            name: info.name.clone(),
+            rows: seen.map(FrameSize::rows),
+            columns: seen.map(FrameSize::columns),
+            unit: info.unit.clone(),
+            start: info.start.clone(),
             seconds_per_frame: info.seconds_per_frame,
             pitch_mm: info.pitch_mm,
             threshold: info.threshold,
-            peak: self.peak.number(),
-            marks: &self.marked,
+            info: info.clone(),
+            ..Self::default()
         }
+    }
+
+    fn add(&mut self, frame: &Frame, values: &[f64], asked: Option<&Label>) {
+        let present = values.iter().filter(|value| !value.is_nan());
+        let cells = present.clone().count();
+        self.cells = self.cells.max(cells);
+        let sum = (cells > 0).then(|| present.sum());
+        self.best.add(frame.number, sum);
+        self.peak = self.best.number();
+        if let Some(time) = frame.time {
+            let (first, last) = self.times.unwrap_or((time, time));
+            if time < last {
+                self.backwards.get_or_insert(frame.number);
+            }
+            self.times = Some((first, time));
+        }
+        if let Some(label) = &frame.label {
+            let ends = self.labels.take();
+            let (least, most) = ends.unwrap_or_else(|| (label.clone(), label.clone()));
+            self.labels = Some((least.min(label.clone()), most.max(label.clone())));
+            let is_marked = |own: i64| {
+                let mut marks = self.info.marks.iter();
+                marks.any(|mark| i64::try_from(mark.number) == Ok(own))
+            };
+            if label.number().is_some_and(is_marked) {
+                self.marks.push(frame.number);
+            }
+            if asked == Some(label) {
+                self.labelled.push(frame.number);
+            }
+        }
+        self.frames += 1;
+        self.values = self.info.values.unwrap_or(frame.values().len() as u64);
     }
 
     fn lines(&self) -> Vec<String> {
@@ -345,14 +351,12 @@ impl Channel {
             Some(side) => format!("{} mm", short(side)),
             None => format!("{} mm across, {} mm down", short(x), short(y)),
         });
-        let time = self.times.map(|times| {
-            let [first, last] = [times.first, times.last].map(|time| decimal(time, 9));
-            let back = times
-                .backwards
-                .map(|number| format!(", goes back at frame {number}"));
+        let time = self.times.map(|(first, last)| {
+            let back = (self.backwards).map(|number| format!(", goes back at frame {number}"));
+            let [first, last] = [first, last].map(|time| decimal(time, 9));
             format!("{first} to {last} s{}", back.unwrap_or_default())
         });
-        let marks: Vec<String> = self.marked.iter().map(u64::to_string).collect();
+        let marks: Vec<String> = self.marks.iter().map(u64::to_string).collect();
         let step = info
             .seconds_per_frame
             .map(|step| format!("{} s", decimal(step, 6)));
@@ -370,10 +374,7 @@ impl Channel {
                 info.threshold.map(|value| short(value) + &unit(info)),
             ),
             ("marks", (!marks.is_empty()).then(|| marks.join(", "))),
-            (
-                "peak",
-                self.peak.number().map(|number| format!("frame {number}")),
-            ),
+            ("peak", self.peak.map(|number| format!("frame {number}"))),
         ];
         let rows = rows.into_iter();
         rows.filter_map(|(name, value)| Some(format!("{name:<10}{}", value?)))
@@ -381,19 +382,16 @@ impl Channel {
     }
 
     fn size(&self) -> String {
-        let Some(seen) = self.seen else {
+        let Some((rows, columns)) = self.rows.zip(self.columns) else {
             let values = counted(self.values, "value");
             return format!("{values} a frame; give --rows and --columns");
         };
-        let whole = self.info.size.filter(|whole| *whole != seen);
-        let whole = whole.map(|whole| format!(" of {} × {}", whole.rows(), whole.columns()));
-        format!(
-            "{} × {}{}, {}",
-            counted(seen.rows(), "row"),
-            counted(seen.columns(), "column"),
-            whole.unwrap_or_default(),
-            counted(self.cells as u64, "cell")
-        )
+        let whole = self.info.size.map(|size| (size.rows(), size.columns()));
+        let whole = whole.filter(|&whole| whole != (rows, columns));
+        let whole = whole.map(|(rows, columns)| format!(" of {rows} × {columns}"));
+        let (rows, columns) = (counted(rows, "row"), counted(columns, "column"));
+        let cells = counted(self.cells as u64, "cell");
+        format!("{rows} × {columns}{}, {cells}", whole.unwrap_or_default())
     }
 
     /// Why none of its frames is the chosen one.
@@ -425,32 +423,6 @@ impl Channel {
     }
 }
 
-#[derive(Serialize)]
-struct ListJson<'a> {
-    /// Null if a damage comes before the format is certain.
-    format: Option<&'static str>,
-    channels: Vec<ChannelJson<'a>>,
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    notes: &'a [String],
-}
-
-#[derive(Serialize)]
-struct ChannelJson<'a> {
-    name: Option<&'a str>,
-    frames: u64,
-    rows: Option<u16>,
-    columns: Option<u16>,
-    cells: usize,
-    unit: Option<&'a str>,
-    start: Option<&'a str>,
-    seconds_per_frame: Option<f64>,
-    pitch_mm: Option<[f64; 2]>,
-    threshold: Option<f64>,
-    peak: Option<u64>,
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    marks: &'a [u64],
-}
-
 const MOST_WARNINGS: usize = 20;
 
 struct Answering<'a> {
@@ -462,7 +434,7 @@ struct Answering<'a> {
     namer: Option<Namer>,
     pitch: Option<f64>,
     kept: Kept,
-    output: &'a mut dyn Write,
+    output: RefCell<BufWriter<StdoutLock<'static>>>,
 }
 
 impl Answering<'_> {
@@ -474,13 +446,14 @@ impl Answering<'_> {
         refused(&self.name, why)
     }
 
-    fn write(&mut self, text: impl AsRef<[u8]>) -> Result<(), Failure> {
-        let written = self.output.write_all(text.as_ref());
+    fn write(&self, text: impl AsRef<[u8]>) -> Result<(), Failure> {
+        let written = self.output.borrow_mut().write_all(text.as_ref());
         written.map_err(Failure::of_output)
     }
 
-    fn run(mut self, mut recording: RecordingFile) -> Result<(), Failure> {
-        let mut scan = Scan::of(&mut recording, &self.pipeline.processing.view);
+    fn run(&self, mut recording: RecordingFile) -> Result<(), Failure> {
+        let view = &self.pipeline.processing.view;
+        let mut scan = Scan::of(&mut recording, view, self.asked.label.as_ref());
         let wanted = self.asked.frames.channel.as_deref();
         if let Some(complaint) = &recording.complaint {
             self.cx.note(&format!("warning: {complaint}"));
@@ -505,24 +478,20 @@ impl Answering<'_> {
         let mut answered = false;
         for index in channels.clone() {
             let channel = &scan.channels[index];
-            let (mut pipeline, number) =
-                match self.prepared(&mut recording, &choice, (index, channel)) {
-                    Ok(prepared) => prepared,
-                    // If frames are missing, the damage is the reason.
-                    Err(failure) => return Err(damage.unwrap_or(failure)),
-                };
+            let prepared = self.prepared(&mut recording, &choice, (index, channel));
+            let (mut pipeline, numbers) = match prepared {
+                Ok(prepared) => prepared,
+                // If frames are missing, the damage is the reason.
+                Err(failure) => return Err(damage.unwrap_or(failure)),
+            };
             if self.asked.csv && index == channels.start {
                 self.write(FrameAnswer::csv_header())?;
             }
             answered |= if self.asked.noise_report {
                 self.report_noise(&mut recording, index, &mut pipeline)?
             } else {
-                self.answer(
-                    &mut recording,
-                    (&choice, number),
-                    (index, channel),
-                    &mut pipeline,
-                )?
+                self.check_kept(&recording, &numbers, channel.frames)?;
+                self.answer(&mut recording, (index, channel), &numbers, &mut pipeline)?
             };
         }
         match damage {
@@ -573,7 +542,7 @@ impl Answering<'_> {
         }
     }
 
-    fn list(&mut self, scan: &Scan, wanted: Option<&str>) -> Result<(), Failure> {
+    fn list(&self, scan: &Scan, wanted: Option<&str>) -> Result<(), Failure> {
         if let Some(misfit) = &scan.misfit {
             return Err(self.refused(misfit));
         }
@@ -585,7 +554,7 @@ impl Answering<'_> {
         if self.asked.json {
             let list = ListJson {
                 format,
-                channels: channels.iter().map(Channel::json).collect(),
+                channels,
                 notes: &scan.plain,
             };
             return self.write(json::ascii(&list) + "\n");
@@ -602,13 +571,13 @@ impl Answering<'_> {
     }
 
     /// Completes the processing of a channel with its threshold and its tare, for which the recording is read again.
-    /// Also returns the number of the frame to answer, if it is known to be a single one.
+    /// Also returns the numbers of the frames to answer.
     fn prepared(
         &self,
         recording: &mut RecordingFile,
         choice: &Choice,
         (index, channel): (usize, &Channel),
-    ) -> Result<(Pipeline, Option<u64>), Failure> {
+    ) -> Result<(Pipeline, Vec<Range<u64>>), Failure> {
         let mut pipeline = self.pipeline.clone();
         if let Some(unused) = pipeline.begin(&channel.info) {
             self.warn(unused);
@@ -625,7 +594,6 @@ impl Answering<'_> {
                  --low and --high, or --deviations",
             ));
         }
-        let refused = |pipeline: &Pipeline, error| self.refused(pipeline.explained(&error));
         if pipeline.progress().is_some() {
             // Damage after the tare's frames does not matter here.
             recording.frames_again(index, |frame| match pipeline.add_to_tare(frame) {
@@ -635,105 +603,108 @@ impl Answering<'_> {
             })?;
         }
         if let Some(lacking) = pipeline.lacking() {
-            return Err(refused(&pipeline, lacking));
+            return Err(self.refused(pipeline.explained(&lacking)));
         }
         if let Some(unknown) = pipeline.unknown_step() {
             self.warn(unknown);
         }
         let processing = &pipeline.processing;
-        let number = match choice {
-            Choice::Number(number) => Some(*number),
-            Choice::Label(_) | Choice::All => None,
+        let one = |number: u64| number..number + 1;
+        let numbers = match choice {
+            Choice::All => vec![0..u64::MAX],
+            Choice::Number(number) => vec![one(*number)],
+            Choice::Label(_) => channel.labelled.iter().copied().map(one).collect(),
             // Without tare and gain the listing has it already.
             Choice::Peak if processing.tare.is_none() && processing.gain.is_none() => {
-                channel.peak.number()
+                channel.peak.map(one).into_iter().collect()
             }
             Choice::Peak => {
                 let mut peak = Peak::default();
-                recording.frames_again(index, |frame| {
-                    let sum = pipeline.run(frame).map(|processed| processed.tared_sum);
-                    let sum = sum.map_err(|error| refused(&self.pipeline, error))?;
-                    peak.add(frame.number, sum);
-                    Ok::<_, Failure>(ControlFlow::Continue(()))
+                self.each(recording, index, &mut pipeline, |frame, processed| {
+                    peak.add(frame.number, processed.tared_sum);
+                    Ok(ControlFlow::Continue(()))
                 })?;
-                peak.number()
+                peak.number().map(one).into_iter().collect()
             }
         };
-        Ok((pipeline, number))
+        Ok((pipeline, numbers))
     }
 
-    /// Answers the chosen frames; returns true if there were any. The recording is read from its beginning again, but
-    /// not beyond a frame whose number is known.
-    fn answer(
-        &mut self,
+    /// Reads the frames of a channel again from the first one, and processes them.
+    fn each(
+        &self,
         recording: &mut RecordingFile,
-        (choice, number): (&Choice, Option<u64>),
+        index: usize,
+        pipeline: &mut Pipeline,
+        mut take: impl FnMut(&Frame, Processed<'_>) -> Result<ControlFlow<()>, Failure>,
+    ) -> Result<(), Failure> {
+        recording.frames_again(index, |frame| match pipeline.run(frame) {
+            Ok(processed) => take(frame, processed),
+            Err(error) => Err(self.refused(self.pipeline.explained(&error))),
+        })
+    }
+
+    /// Checks what can be checked of the frames to keep before the first of them is answered: that their files may be
+    /// written, and that a label means one frame.
+    fn check_kept(
+        &self,
+        recording: &RecordingFile,
+        numbers: &[Range<u64>],
+        frames: u64,
+    ) -> Result<(), Failure> {
+        if let ([first, second, ..], Some(label)) = (numbers, &self.asked.label)
+            && self.kept.is_asked()
+        {
+            return Err(self.refused(format!(
+                "frames {} and {} are both labelled {label}; choose one with --frame",
+                first.start, second.start
+            )));
+        }
+        let Some(export) = &self.kept.export else {
+            return Ok(());
+        };
+        let numbers = numbers
+            .iter()
+            .flat_map(|own| own.start..own.end.min(frames));
+        let mut exports = numbers.map(|number| export.numbered(number));
+        exports.try_for_each(|export| check(&export, recording))
+    }
+
+    /// Answers frames; returns true if there were any. The recording is not read beyond the last of them.
+    fn answer(
+        &self,
+        recording: &mut RecordingFile,
         (index, channel): (usize, &Channel),
+        numbers: &[Range<u64>],
         pipeline: &mut Pipeline,
     ) -> Result<bool, Failure> {
-        let has = |frame: &Frame| match choice {
-            Choice::All => true,
-            Choice::Label(label) => frame.label.as_ref() == Some(label),
-            Choice::Number(_) | Choice::Peak => Some(frame.number) == number,
-        };
-        if self.kept.is_asked() {
-            let numbers = match (choice, number) {
-                (Choice::Label(label), _) => self.labelled(recording, index, label)?,
-                (_, Some(number)) => number..number + 1,
-                _ => 0..channel.frames,
-            };
-            // No file is written if a later one cannot be.
-            if let Some(export) = &self.kept.export {
-                let mut exports = numbers.map(|number| export.numbered(number));
-                exports.try_for_each(|export| check(&export, recording))?;
-            }
-        }
+        let end = numbers.last().map_or(0, |last| last.end);
         let mut answered = false;
         recording.frames_again(index, |frame| {
-            if !has(frame) {
-                return Ok(ControlFlow::Continue(()));
+            let next = numbers.partition_point(|own| own.end <= frame.number);
+            if numbers
+                .get(next)
+                .is_some_and(|own| own.contains(&frame.number))
+            {
+                let processed = pipeline.run(frame);
+                let processed =
+                    processed.map_err(|error| self.refused(self.pipeline.explained(&error)))?;
+                self.give(channel, frame, processed, answered)?;
+                answered = true;
             }
-            let processed = pipeline.processing.run(frame);
-            let processed =
-                processed.map_err(|error| self.refused(self.pipeline.explained(&error)))?;
-            self.give(channel, frame, processed, answered)?;
-            answered = true;
-            Ok::<_, Failure>(match number {
-                Some(_) => ControlFlow::Break(()),
-                None => ControlFlow::Continue(()),
+            Ok(if frame.number + 1 >= end {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
             })
         })?;
         Ok(answered)
     }
 
-    /// The number of the frame with a label. A label that several frames have is refused: it is not clear which of
-    /// them is to be kept.
-    fn labelled(
-        &self,
-        recording: &mut RecordingFile,
-        index: usize,
-        label: &Label,
-    ) -> Result<Range<u64>, Failure> {
-        let mut found = None;
-        recording.frames_again(index, |frame| {
-            if frame.label.as_ref() != Some(label) {
-                return Ok(ControlFlow::Continue(()));
-            }
-            match found.replace(frame.number) {
-                None => Ok(ControlFlow::Continue(())),
-                Some(first) => Err(self.refused(format!(
-                    "frames {first} and {} are both labelled {label}; choose one with --frame",
-                    frame.number
-                ))),
-            }
-        })?;
-        Ok(found.map_or(0..0, |number| number..number + 1))
-    }
-
     /// Answers a frame. Notes about it are lines below the matrix; with JSON they go to standard error. An export to
     /// standard output takes the place of the answer. An empty line separates it from frames before it.
     fn give(
-        &mut self,
+        &self,
         channel: &Channel,
         frame: &Frame,
         processed: Processed<'_>,
@@ -850,7 +821,7 @@ impl Answering<'_> {
     /// Reports which taxels of a channel flip or are stuck, and writes the mask of the stuck ones if a file is given.
     /// Returns false, and reports nothing, if the channel has no frames.
     fn report_noise(
-        &mut self,
+        &self,
         recording: &mut RecordingFile,
         index: usize,
         pipeline: &mut Pipeline,
@@ -859,13 +830,12 @@ impl Answering<'_> {
             check(export, recording)?;
         }
         let mut counter: Option<FlipCounter> = None;
-        recording.frames_again(index, |frame| {
-            let processed = pipeline.run(frame).map_err(|error| self.refused(error))?;
+        self.each(recording, index, pipeline, |_, processed| {
             let counter = counter.get_or_insert_with(|| FlipCounter::new(cells(processed.raw)));
             if let Some(imprint) = &processed.imprint {
                 counter.add(imprint);
             }
-            Ok::<_, Failure>(ControlFlow::Continue(()))
+            Ok(ControlFlow::Continue(()))
         })?;
         let Some(found) = counter.map(|counter| counter.finish()) else {
             return Ok(false);

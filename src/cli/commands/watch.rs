@@ -18,13 +18,12 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{
-    Receiver, RecvTimeoutError, SyncSender, TryRecvError, TrySendError, channel, sync_channel,
-};
+use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, sync_channel};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use clap::Arg;
-use taxel_core::frame::{Frame, FrameSize, TareFrames};
+use taxel_core::frame::{Frame, TareFrames};
 use taxel_core::imprint::Imprint;
 use taxel_core::quote::as_argument;
 use taxel_files::acquire::{
@@ -45,7 +44,7 @@ use crate::cli::commands::frame_flags::WatchFlags;
 use crate::cli::commands::model;
 use crate::cli::commands::recognise::{FoundNamer, Namer, NamingFlags};
 use crate::cli::commands::screen::{self, Look};
-use crate::cli::failure::Failure;
+use crate::cli::failure::{Failure, Named};
 use crate::cli::input::recording::{RecordingFile, damaged, noted, refused};
 use crate::cli::output::charset::Charset;
 use crate::cli::signals::Signals;
@@ -153,7 +152,6 @@ fn watch(request: &WatchRequest, naming: &NamingFlags, cx: &Context) -> Result<(
         held: None,
         pipeline: request.pipeline.clone(),
         waiting: Vec::new(),
-        size: None,
         may_give_up: source.arrives(request.options.playback) && recording.is_some(),
         recording,
         unrecorded: None,
@@ -266,8 +264,6 @@ struct Watcher<'a> {
     pipeline: Pipeline,
     /// The frames that wait for the tare.
     waiting: Vec<Frame>,
-    /// Rows and columns of the last frame.
-    size: Option<FrameSize>,
     recording: Option<Recording>,
     unrecorded: Option<Failure>,
     /// None once nothing can be written any more.
@@ -382,13 +378,6 @@ impl Watcher<'_> {
     }
 
     fn take(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), Failure> {
-        let size = frame.size();
-        let before = self.size.replace(size);
-        // In a recording, each frame may have a size of its own.
-        if before.is_some_and(|before| before != size) && self.names.is_empty() {
-            let (number, size) = (frame.number, size.in_words());
-            self.say(format!("{size} cells from frame {number} on"));
-        }
         self.record(|recorder| recorder.add(frame, time))?;
         let mut frame = frame.clone();
         frame.time = time;
@@ -401,7 +390,10 @@ impl Watcher<'_> {
             Taring::Done => return self.answer(&frame),
             Taring::LeftOut(error) if self.waiting.is_empty() => return Err(self.refused(error)),
             Taring::LeftOut(_) => {}
-            Taring::Again => self.waiting.retain(|frame: &Frame| frame.size() == size),
+            Taring::Again => {
+                let size = frame.size();
+                self.waiting.retain(|own| own.size() == size);
+            }
             Taring::Added | Taring::Made => {}
         }
         if let Some((_, wanted)) = self.pipeline.progress() {
@@ -638,8 +630,8 @@ type Line = (Vec<u8>, Option<Imprint>);
 /// model, that thread also names each imprint.
 struct LineWriter {
     lines: SyncSender<Line>,
-    ended: Receiver<Result<io::Result<()>, Failure>>,
-    is_over: Arc<AtomicBool>,
+    /// Fails if the model cannot be trained; the inner error is that of standard output.
+    thread: JoinHandle<Result<io::Result<()>, Failure>>,
     stopped: Arc<AtomicBool>,
     /// The number of lines dropped because too many were waiting.
     given_up: u64,
@@ -648,32 +640,20 @@ struct LineWriter {
 impl LineWriter {
     fn start(stopped: &Arc<AtomicBool>, namer: Option<FoundNamer>) -> Result<Self, Failure> {
         let (lines, waiting) = sync_channel(WAITING);
-        let (ends, ended) = channel();
-        let is_over = Arc::new(AtomicBool::new(false));
-        let over = Arc::clone(&is_over);
-        let write = move || {
-            let namer = namer
-                .map(|found| found.ready(true, Charset::Ascii))
-                .transpose()?;
-            Ok(write_lines(&waiting, namer.as_ref()))
-        };
         let thread = std::thread::Builder::new().spawn(move || {
-            // The receiver may have given up.
-            let _ = ends.send(write());
-            over.store(true, Ordering::Release);
+            let namer = namer.map(|found| found.ready(true, Charset::Ascii));
+            Ok(write_lines(&waiting, namer.transpose()?.as_ref()))
         });
-        thread.map_err(|error| Failure::new(format!("cannot start a thread: {error}")))?;
         Ok(Self {
             lines,
-            ended,
-            is_over,
+            thread: thread.named("cannot start a thread")?,
             stopped: Arc::clone(stopped),
             given_up: 0,
         })
     }
 
     fn has_ended(&self) -> bool {
-        self.is_over.load(Ordering::Acquire)
+        self.thread.is_finished()
     }
 
     /// Sends a line. If too many are waiting, it waits until there is room, or drops the line if `may_give_up`; after
@@ -695,25 +675,21 @@ impl LineWriter {
     }
 
     /// Waits until all lines are written; after a signal, for a second at most. Lines that nobody has read by then are
-    /// lost. The inner error is that of standard output.
+    /// lost.
     fn finish(self) -> Result<io::Result<()>, Failure> {
         drop(self.lines);
         let mut stopped_at = None;
-        loop {
-            match self.ended.recv_timeout(10 * PAUSE) {
-                Ok(ended) => return ended,
-                Err(RecvTimeoutError::Disconnected) => {
-                    return Err(Failure::new("the thread that writes has failed"));
-                }
-                Err(RecvTimeoutError::Timeout) => {}
-            }
+        while !self.thread.is_finished() {
             if self.stopped.load(Ordering::Relaxed)
                 && stopped_at.get_or_insert_with(Instant::now).elapsed() > PATIENCE
             {
                 // The thread ends with the program.
                 return Ok(Ok(()));
             }
+            std::thread::sleep(PAUSE);
         }
+        let ended = self.thread.join();
+        ended.unwrap_or_else(|_| Err(Failure::new("the thread that writes has failed")))
     }
 }
 

@@ -92,10 +92,10 @@ impl RecordingFile {
 
     /// Reads the frames of a channel from the beginning of the recording again, until `take` breaks or fails. Damage
     /// is an error unless it is known or comes after that.
-    pub(crate) fn frames_again<E: Into<Failure>>(
+    pub(crate) fn frames_again(
         &mut self,
         channel: usize,
-        mut take: impl FnMut(&Frame) -> Result<ControlFlow<()>, E>,
+        mut take: impl FnMut(&Frame) -> Result<ControlFlow<()>, Failure>,
     ) -> Result<(), Failure> {
         let mut failed = None;
         let read = self.read(&mut |event| match event {
@@ -108,7 +108,7 @@ impl RecordingFile {
             _ => ControlFlow::Continue(()),
         });
         match (failed, read) {
-            (Some(failed), _) => Err(failed.into()),
+            (Some(failed), _) => Err(failed),
             (None, Err(error)) if !self.is_damaged => Err(self.damaged(&error)),
             _ => Ok(()),
         }
