@@ -116,23 +116,6 @@ fn frames_are_chosen_by_number_label_or_sum() {
         "--label 0 --at-least 9",
         "no frame is labelled 0; the labels go from 1 to 3",
     );
-    for (labels, message) in [
-        (
-            "",
-            "no frame is labelled 3: the frames have no labels, only numbers; choose one with --frame",
-        ),
-        (
-            "\"label\":7,",
-            "no frame is labelled 3; the only label is 7",
-        ),
-    ] {
-        let run = taxel(
-            "frames - --label 3 --at-least 9",
-            format!("{{{labels}\"frame\":[[1,2],[3,4]]}}\n"),
-        );
-        let expected = format!("error: standard input: {message}\n");
-        assert_eq!((run.status, run.stderr), (Some(1), expected));
-    }
 }
 
 #[test]
@@ -218,20 +201,6 @@ fn one_of_several_channels_must_be_named() {
 }
 
 #[test]
-fn the_only_array_of_an_archive_is_a_channel_with_the_arrays_name() {
-    let listed = answered("touch.npz", "--json");
-    assert_eq!(listed[0]["channels"][0]["name"], "touch");
-    let frame = &answered("touch.npz", "--channel touch --frame 0 --at-least 9 --json")[0];
-    assert_eq!(frame["channel"], "touch");
-    // The channel need not be named.
-    assert_eq!(
-        &answered("touch.npz", "--frame 0 --at-least 9 --json")[0],
-        frame
-    );
-    unanswered("touch.npz", "--channel other", "touch");
-}
-
-#[test]
 fn missing_rows_and_columns_are_asked_for_and_a_crop_must_fit() {
     unanswered("plain.csv", "", "--rows and --columns");
     unanswered(
@@ -291,34 +260,6 @@ fn whole_frames_before_damage_are_answered_then_the_damage_is_reported() {
         run.stderr,
         "warning: standard input: frame 1 (label 2): Raw Sum should be 68, but the values give 67\n"
     );
-}
-
-#[test]
-fn missing_records_that_the_header_counts_are_reported() {
-    let whole = std::fs::read(sample("records.npy")).expect("an array");
-    // The header counts two; the third was written after that, as in the file of a program that was killed.
-    let cut = &whole[..whole.len() - 97];
-    let run = taxel("frames - --all --at-least 1 --json", cut);
-    assert_eq!((run.status, answers(&run).len()), (Some(0), 1));
-    assert_eq!(
-        run.stderr,
-        "warning: standard input: the file was cut off: it has 1 of the 2 frames that its header counts\n"
-    );
-    assert_eq!(taxel("frames -", &whole).stderr, "");
-}
-
-#[test]
-fn rows_and_columns_in_the_recording_override_the_flags() {
-    let run = frames("tekscan.asf", "--rows 2 --columns 2");
-    assert_eq!(run.status, Some(0));
-    let expected = "it states 4 rows and 5 columns; --rows and --columns have no effect\n";
-    assert!(run.stderr.ends_with(expected), "{}", run.stderr);
-    assert_eq!(frames("tekscan.asf", "--rows 4 --columns 5").stderr, "");
-    // Of several channels, the chosen one counts.
-    let image = frames("topics.mcap", "--channel /image --rows 3 --columns 1");
-    assert!(image.stderr.ends_with(expected), "{}", image.stderr);
-    let tip = frames("topics.mcap", "--channel /state#tip --rows 3 --columns 1");
-    assert_eq!(tip.stderr, "");
 }
 
 #[test]
@@ -390,41 +331,6 @@ fn the_recording_being_read_is_never_replaced() {
         assert_eq!(std::fs::read(plain).expect("there"), frames, "{flags}");
         let first = folder.path().join("rec-0.npy");
         assert_eq!(first.exists(), target.is_empty(), "{flags}");
-    }
-}
-
-#[test]
-fn a_copy_that_cannot_be_made_is_not_a_fault_of_the_input() {
-    let sample = sample("tekscan.asf");
-    let command = || {
-        let mut command = super::program(&["frames", "-", "--peak", "--at-least", "9"], "C");
-        command.env("TMPDIR", "/nonexistent");
-        command
-    };
-    let child = command().spawn().expect("the program starts");
-    let piped = super::finish(child, &std::fs::read(&sample).expect("a sample"));
-    let message = "error: standard input: cannot read: cannot keep a copy in /nonexistent (TMPDIR): no such file or folder";
-    assert!(piped.stderr.starts_with(message), "{}", piped.stderr);
-    // A file needs no copy.
-    let file = std::fs::File::open(&sample).expect("a sample");
-    let run = command().stdin(file).output().expect("the program runs");
-    assert_eq!(run.status.code(), Some(0));
-}
-
-#[test]
-fn an_empty_field_at_either_end_of_a_line_is_a_missing_cell() {
-    let flags = "--rows 1 --columns 3 --at-least 1";
-    let row = |row: &str| serde_json::json!([row]);
-    for (text, frames) in [
-        ("r0c0,r0c1,r0c2\n1,2,3\n4,5,\n", ["###", "##."]),
-        (",2,3\n4,,6\n", [".##", "#.#"]),
-        ("r0c0\tr0c1\tr0c2\n\t2\t3\n4\t5\t\n", [".##", "##."]),
-        // A separator at the end is no cell, nor are tabs around a whole line.
-        ("1,2,3,\n4,5,6,\n", ["###", "###"]),
-        ("\t1\t2\t3\t\n\t4\t5\t6\t\n", ["###", "###"]),
-    ] {
-        let found = imprints_of("ends.csv", text.as_bytes(), flags);
-        assert_eq!(found, frames.map(row), "{text:?}");
     }
 }
 
@@ -567,32 +473,6 @@ fn the_noise_of_a_recording_is_reported() {
     assert!(run.stdout.contains(flips), "{}", run.stdout);
     let written = std::fs::read_to_string(&mask).expect("it is written");
     assert_eq!(written, ".....\n.....\n.....\n.....\n....#\n");
-    // Values that change at random flip too often for any noise below one half; from two frames nothing can be said.
-    let mut state = 1_u32;
-    let mut random = || {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        9 * (state >> 31)
-    };
-    let mut flipping = String::new();
-    for number in 0..60 {
-        let values = [number % 2 * 9, random(), random()];
-        flipping += &format!("{{\"frame\":[{values:?}]}}\n");
-    }
-    let line = "frames - --noise-report --at-least 5";
-    let run = taxel(line, flipping.clone());
-    assert!(
-        run.stdout.contains("\nnoise 0.5 or more: "),
-        "{}",
-        run.stdout
-    );
-    let run = taxel(&format!("{line} --json"), flipping);
-    assert!(answers(&run)[0]["noise"].is_null(), "{}", run.stdout);
-    let run = taxel(line, "{\"frame\":[[9,0]]}\n".repeat(2));
-    assert!(
-        run.stdout.contains("\ntoo few frames to tell"),
-        "{}",
-        run.stdout
-    );
     // Flags that have no meaning for many frames are refused, not ignored.
     for flag in ["--save mask", "--model figures", "--heat", "--pitch 2"] {
         let line = format!("frames - --noise-report --at-least 5 {flag}");
@@ -600,120 +480,74 @@ fn the_noise_of_a_recording_is_reported() {
     }
 }
 
-/// Errors at the beginning are reported, although the input has no end and is never read to it.
 #[test]
-fn an_endless_input_is_refused_at_once() {
-    for (line, expected) in [
-        (
-            "1 2 3",
-            "3 numbers a line, but the rows and columns of a frame are not stated",
-        ),
-        (
-            "{\\\"frame\\\":[[1],[]]}",
-            "line 1: row 2 has 0 values, expected 1",
-        ),
-        ("no recording", "error: standard input: not a recording"),
-    ] {
-        let script = format!("yes \"{line}\" | timeout 5 \"$0\" frames -");
-        let run = sh(&script).output().expect("started");
-        let said = String::from_utf8_lossy(&run.stderr).into_owned();
-        assert_eq!(run.status.code(), Some(1), "{said}");
-        assert!(said.contains(expected), "{said}");
+fn a_gain_and_a_mask_change_the_imprint() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("touch.jsonl");
+    std::fs::write(&path, "{\"frame\":[[5,5],[5,1]]}\n").expect("written");
+    let path = path.to_str().expect("UTF-8");
+    let run = |line: &str, input: &str| taxel(&format!("{line} {path} --at-least 3"), input);
+    for line in ["frames --all --json", "watch --once"] {
+        let imprint = |flags: &str, input: &str| {
+            let run = run(&format!("{line} {flags}"), input);
+            assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""), "{flags}");
+            answers(&run)[0]["imprint"].clone()
+        };
+        let rows = |rows: [&str; 2]| serde_json::json!(rows);
+        assert_eq!(imprint("--mask -", "#.\n..\n"), rows([".#", "#."]));
+        for gain in ["1,1\n0,3\n", "1;1\n0;3", "# factors\n1 1\n0 3\n\n"] {
+            assert_eq!(imprint("--gain -", gain), rows(["##", ".#"]));
+        }
+        let answer = &answers(&run(&format!("{line} --gain -"), "1,1\n0,3\n"))[0];
+        assert_eq!((&answer["gain"], &answer["max"]), (&true.into(), &5.into()));
+        for (gain, message) in [
+            ("1,2,3\n", "the gain has 3 columns and 1 row"),
+            (
+                "1,2\n3,x\n",
+                "line 2, column 2: found \"x\", expected a number",
+            ),
+            (
+                "{\"frame\":[[1,1]]}\n{\"frame\":[[1,1]]}\n",
+                "a recording of several frames",
+            ),
+        ] {
+            let run = run(&format!("{line} --gain -"), gain);
+            assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""));
+            assert!(run.stderr.contains(message), "{gain:?}: {}", run.stderr);
+        }
     }
+    let text = run("frames --all --gain - --tare 1", "1,1\n0,3\n").stdout;
+    assert!(
+        text.contains("raw max 5, tare of 1 frame, gain applied\nforce 0\n"),
+        "{text}"
+    );
+    let missing = run("frames --all --mask nowhere", "");
+    assert!(
+        missing
+            .stderr
+            .starts_with("error: --mask nowhere: cannot read: ")
+    );
+    let both = "standard input can be read only once, so only one argument can be '-'\n";
+    misused(&format!("frames {path} --all --mask - --gain -"), both);
 }
 
 /// A sensor that is tared by its driver rests at exactly 0, so its step is unknown.
 #[test]
 fn deviations_without_noise_or_a_step_are_warned_about() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("rest.jsonl");
-    let path = file.to_str().expect("ASCII");
-    let equal = "all values of the tare are equal, so their step is unknown; a cell counts as active if it exceeds its tare \
-                 by 1 in the sensor's unit\n";
-    let warning = format!("warning: {path}: {equal}");
-    let watch_warning = format!("warning: standard input: {equal}");
-    for (second, last, na, stderr) in [
-        ("0", "0.9", 0, &*warning),
-        ("0", "1", 1, &warning),
-        ("0.5", "0.9", 1, ""),
-    ] {
-        let rest = format!("{{\"frame\":[[0,{second}]]}}\n");
-        let lines = rest.repeat(3) + &format!("{{\"frame\":[[{last},{second}]]}}\n");
-        std::fs::write(&file, &lines).expect("written");
-        let flags = "--tare 3 --deviations 2 --json";
-        let run = taxel(&format!("frames {path} --frame 3 {flags}"), "");
-        assert_eq!((run.status, run.stderr.as_str()), (Some(0), stderr));
-        let answer: Value = serde_json::from_str(&run.stdout).expect("an answer");
-        assert_eq!(answer["na"], na, "{last}");
-        let watched = taxel(&format!("watch - --once {flags}"), lines);
-        let expected = if stderr.is_empty() {
-            ""
-        } else {
-            &watch_warning
-        };
-        assert_eq!((watched.status, &*watched.stderr), (Some(0), expected));
-    }
-}
-
-/// Flags that would change nothing in a listing are refused.
-#[test]
-fn a_listing_accepts_no_threshold_and_no_tare() {
-    for flags in [
-        "--at-least 10",
-        "--percent 50",
-        "--low 5 --high 9",
-        "--tare 2",
-        "--tare 2 --deviations 3",
-        "--least 3",
-        "--gain gain.csv",
-        "--flip x",
-        "--turn 90",
-    ] {
-        let arguments = format!("frames {} {flags}", sample("tekscan.asf"));
-        misused(
-            &arguments,
-            "the following required arguments were not provided:",
-        );
+    for (second, last, na) in [("0", "0.9", 0), ("0", "1", 1), ("0.5", "0.9", 1)] {
+        let rest = format!("{{\"frame\":[[0,{second}]]}}\n").repeat(3);
+        let lines = rest + &format!("{{\"frame\":[[{last},{second}]]}}\n");
+        let run = taxel("frames - --frame 3 --tare 3 --deviations 2 --json", lines);
+        assert_eq!(answers(&run)[0]["na"], na, "{last}");
+        let warned = run
+            .stderr
+            .contains("all values of the tare are equal, so their step is unknown");
+        assert_eq!(warned, second == "0", "{}", run.stderr);
     }
 }
 
 #[test]
-fn a_plain_table_of_factors_is_read_as_a_gain() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("gain.csv");
-    let gain = path.to_str().expect("UTF-8");
-    let flags = format!("--frame 1 --at-least 9 --json --gain {gain}");
-    let na = |content: &str| {
-        std::fs::write(&path, content).expect("written");
-        answered("tekscan.asf", &flags)[0]["na"].clone()
-    };
-    let table = |factor: &str| format!("{}\n", [factor; 5].join(",")).repeat(4);
-    assert_eq!(na(&table("0")), 0);
-    assert_eq!(na(&table("1000")), na(&format!("{}\n", table("1000"))));
-    assert_ne!(na(&table("1000")), 0);
-    std::fs::write(&path, format!("{}\n", ["1"; 20].join(","))).expect("written");
-    unanswered("tekscan.asf", &flags, "the gain has 20 columns and 1 row");
-    std::fs::write(&path, "{\"frame\":[1,1]}\n").expect("written");
-    unanswered(
-        "tekscan.asf",
-        &flags,
-        "expected a table: a line for each row",
-    );
-    std::fs::write(&path, "1,2\n3,x\n").expect("written");
-    let place = "line 2, column 2: found \"x\", expected a number";
-    unanswered("tekscan.asf", &flags, place);
-    std::fs::write(&path, "a word\n").expect("written");
-    unanswered("tekscan.asf", &flags, "not a recording of a known format");
-    std::fs::copy(sample("tekscan.asf"), &path).expect("copied");
-    unanswered(
-        "tekscan.asf",
-        &flags,
-        "a recording of several frames, expected a table of factors",
-    );
-}
-
-#[test]
-fn a_threshold_out_of_range_names_what_is_allowed() {
+fn flags_out_of_range_or_without_effect_are_refused() {
     for (flags, message) in [
         (
             "--percent 200",
@@ -721,258 +555,44 @@ fn a_threshold_out_of_range_names_what_is_allowed() {
         ),
         ("--low 5 --high 3", "error: --low 5 is above --high 3\n"),
         (
-            "--low=-1e301 --high 5",
-            "error: --low -1e301 is out of range (allowed: -1e300 to 1e300)\n",
-        ),
-        (
             "--low 5 --high 1e301",
             "error: --high 1e301 is out of range (allowed: -1e300 to 1e300)\n",
         ),
     ] {
         unanswered("tekscan.asf", &format!("--all {flags}"), message);
     }
-    for text in ["x", "nan"] {
-        let noise = format!("frames touch.csv --all --at-least 1 --model figures --noise {text}");
-        let message = format!("invalid value '{text}' for '--noise <E>': not a number\n");
-        misused(&noise, &message);
+    // A listing shows values as they are.
+    for flags in ["--at-least 10", "--tare 2", "--gain gain.csv", "--turn 90"] {
+        let line = format!("frames {} {flags}", sample("tekscan.asf"));
+        misused(&line, "the following required arguments were not provided:");
     }
-    misused(
-        "recognise washer --reject 0,5",
-        "invalid value '0,5' for '--reject <P>': not a number; write 0.5\n",
-    );
+    let run = frames("tekscan.asf", "--rows 2 --columns 2");
+    let expected = "it states 4 rows and 5 columns; --rows and --columns have no effect\n";
+    assert!(run.stderr.ends_with(expected), "{}", run.stderr);
 }
 
-/// The threshold then applies to multiplied values, so the answer says that they are.
+/// The input has no end, so an error at its beginning must be enough.
 #[test]
-fn an_answer_says_that_a_gain_was_applied() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("touch.jsonl");
-    std::fs::write(&path, "{\"frame\":[[5,1]]}\n").expect("written");
-    let run = |line: &str| taxel(&format!("{line} {} --at-least 3", path.display()), "2,4\n");
-    for line in ["frames --all --json", "watch --once"] {
-        assert_eq!(answers(&run(line))[0].get("gain"), None, "{line}");
-        let answer = &answers(&run(&format!("{line} --gain -")))[0];
-        assert_eq!(
-            (&answer["gain"], &answer["max"], &answer["imprint"][0]),
-            (&true.into(), &5.into(), &"##".into()),
-            "{line}"
-        );
-    }
-    let text = run("frames --all --gain - --tare 1").stdout;
-    let said = "raw sum 6, raw max 5, tare of 1 frame, gain applied\nforce 0\n";
-    assert!(text.contains(said), "{text}");
-}
-
-/// A mask and a gain can be read from standard input like from a file, but not both of them.
-#[test]
-fn a_mask_and_a_gain_may_come_from_standard_input() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("touch.jsonl");
-    std::fs::write(&path, "{\"frame\":[[5,5],[5,1]]}\n").expect("written");
-    let line = format!("frames {} --all --at-least 3 --json", path.display());
-    let imprint = |flags: &str, input: &str| {
-        let run = taxel(&format!("{line} {flags}"), input);
-        assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""), "{flags}");
-        answers(&run)[0]["imprint"].clone()
-    };
-    assert_eq!(
-        imprint("--mask -", "#.\n..\n"),
-        serde_json::json!([".#", "#."])
-    );
-    assert_eq!(
-        imprint("--gain -", "1,1\n0,3\n"),
-        serde_json::json!(["##", ".#"])
-    );
-    for flag in ["--mask nowhere", "--gain nowhere"] {
-        let run = taxel(&format!("{line} {flag}"), "");
-        let message = format!("error: {flag}: cannot read: ");
-        assert!(run.stderr.starts_with(&message), "{}", run.stderr);
-    }
-    let run = taxel(&format!("{line} --mask -"), "no imprint");
+fn an_endless_input_is_refused_at_once() {
+    let script = "yes 'no recording' | timeout 5 \"$0\" frames -";
+    let run = sh(script).output().expect("started");
+    let said = String::from_utf8_lossy(&run.stderr).into_owned();
+    assert_eq!(run.status.code(), Some(1), "{said}");
     assert!(
-        run.stderr.starts_with("error: --mask standard input: "),
-        "{}",
-        run.stderr
+        said.contains("error: standard input: not a recording"),
+        "{said}"
     );
-}
-
-#[test]
-fn a_gain_of_one_row_or_one_column_is_read_as_a_table() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let write = |name: &str, content: &str| {
-        let path = folder.path().join(name);
-        std::fs::write(&path, content).expect("written");
-        path.to_string_lossy().into_owned()
-    };
-    let cells = [4; 4];
-    let row = write("row.jsonl", &format!("{{\"frame\":[{cells:?}]}}\n"));
-    let column = cells.map(|cell| [cell]);
-    let column = write("column.jsonl", &format!("{{\"frame\":{column:?}}}\n"));
-    let imprint = |recording: &str, gain: &str| {
-        let gain = write("gain.txt", gain);
-        let line = format!("frames {recording} --all --at-least 3 --json --gain {gain}");
-        let run = taxel(&line, "");
-        assert_eq!(run.status, Some(0), "{gain:?}: {}", run.stderr);
-        serde_json::from_str::<Value>(&run.stdout).expect("JSON")["imprint"].clone()
-    };
-    for gain in [
-        "1,2,1,0.5\n",
-        "1,2,1,0.5",
-        "1;2;1;0,5\n",
-        "1\t2\t1\t0.5\n",
-        "# factors\n1 2 1 0.5\n\n",
-        "1, 2, 1, 0.5,\r\n",
-    ] {
-        assert_eq!(imprint(&row, gain), serde_json::json!(["###."]), "{gain:?}");
-    }
-    let found = serde_json::json!([".", "#", "#", "."]);
-    for gain in [
-        "0\n2\n1\n0.5\n",
-        "0\r\n2\r\n1\r\n0.5",
-        "0,\n2,\n1,\n0.5,\n\n",
-    ] {
-        assert_eq!(imprint(&column, gain), found, "{gain:?}");
-    }
-}
-
-#[test]
-fn a_column_of_numbers_is_a_recording_if_rows_and_columns_are_given() {
-    let column = "5\n6\n7\n\n1\n2\n3\n";
-    for (text, flags, expected) in [
-        (
-            column,
-            "--rows 3 --columns 1",
-            r##"[["#","#","#"],[".","#","#"]]"##,
-        ),
-        (
-            "5\n6\n1\n",
-            "--rows 1 --columns 1",
-            r##"[["#"],["#"],["."]]"##,
-        ),
-        (
-            "# grams\n\n5\r\n1\r\n",
-            "--rows 2 --columns 1",
-            r##"[["#","."]]"##,
-        ),
-    ] {
-        let expected: Vec<Value> = serde_json::from_str(expected).expect("JSON");
-        let flags = format!("{flags} --at-least 2");
-        assert_eq!(
-            imprints_of("column.csv", text.as_bytes(), &flags),
-            expected,
-            "{flags}"
-        );
-    }
-    let read =
-        |text: &str, flags: &str| taxel(&format!("frames - --all --at-least 2 {flags}"), text);
-    // Without rows and columns, nothing says that these are frames.
-    super::refused(
-        &read(column, ""),
-        1,
-        "standard input: 1 value a frame, but its rows and columns are not stated; give --rows and --columns",
-    );
-    let words = read("5\nwords\n", "").stderr;
-    assert!(
-        words.contains(": not a recording of a known format"),
-        "{words}"
-    );
-    super::refused(
-        &read(column, "--rows 2 --columns 2"),
-        1,
-        "standard input: line 1: 1 number a line, expected 4 (or 2 for a row)",
-    );
-}
-
-/// Writes a file into a folder of its own, and returns the imprints of all its frames.
-fn imprints_of(name: &str, content: &[u8], flags: &str) -> Vec<Value> {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join(name);
-    std::fs::write(&path, content).expect("written");
-    let path = path.to_str().expect("UTF-8");
-    let run = taxel(&format!("frames {path} --all {flags} --json"), "");
-    assert_eq!(run.status, Some(0), "{name}: {}", run.stderr);
-    let answers = run.stdout.lines();
-    answers
-        .map(|line| serde_json::from_str::<Value>(line).expect("JSON")["imprint"].clone())
-        .collect()
-}
-
-#[test]
-fn unusual_tables_have_their_cells_in_the_right_places() {
-    let two_rows = serde_json::json!(["..#", "###"]);
-    // Two frames of six cells each, with the frames next to each other.
-    let flat: Vec<f64> = (1..=6).flat_map(|cell| [f64::from(cell), 0.0]).collect();
-    let flags = "--rows 2 --columns 3 --at-least 3";
-    let found = imprints_of("flat.npy", &array("(2, 6)", true, &flat), flags);
-    assert_eq!(found[0], two_rows);
-    let square = [1.0, 4.0, 2.0, 5.0, 3.0, 6.0];
-    let found = imprints_of("one.npy", &array("(2, 3)", true, &square), "--at-least 3");
-    assert_eq!(found[0], two_rows);
-    for (text, flags) in [
-        // A value about the frame after its cells.
-        ("S0_0,S0_1,S0_2,S1_0,S1_1,S1_2,total\n1,2,3,4,5,6,21\n", ""),
-        // Comments above and between rows.
-        (
-            "# tactile frames\n1 2 3\n# the second row\n4 5 6\n\n1 2 3\n4 5 6\n",
-            "",
-        ),
-        (
-            "# from Windows\r\n\r\n  # indented\r\n \t\r\n1 2 3\r\n4 5 6\r\n\r\n1 2 3\r\n4 5 6\r\n",
-            "",
-        ),
-        // A pair of numbers that is part of a name by chance.
-        (
-            "a_1_1,a_1_2,c0,c1,c2,c3,c4,c5\n9,9,1,2,3,4,5,6\n",
-            "--rows 2 --columns 3",
-        ),
-        // Numbers in a row are values, unless they count from 0.
-        ("1 2 3\n4 5 6\n\n1 2 3\n4 5 6\n", ""),
-    ] {
-        let found = imprints_of(
-            "table.csv",
-            text.as_bytes(),
-            &format!("{flags} --at-least 3"),
-        );
-        assert_eq!(found[0], two_rows, "{text}");
-    }
-    // The last cell has no value.
-    let text = "r0c0,r0c1,r1c0,r1c1\n1,2,3,\n4,5,6,7\n";
-    let found = imprints_of("none.csv", text.as_bytes(), "--at-least 3");
-    assert_eq!(found[0], serde_json::json!(["..", "#."]));
-    let text = "{\"t\":0,\"n_columns\":2,\"frame\":[[1,2],[3,4]]}\n{\"t\":1,\"n_columns\":2,\"frame\":[[1,2],[3,4]]}\n";
-    let found = imprints_of("lines.jsonl", text.as_bytes(), "--at-least 3");
-    assert_eq!(found[0], serde_json::json!(["..", "##"]));
 }
 
 #[test]
 fn a_frame_without_values_is_never_the_peak() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("idle.jsonl");
     let none = "{\"frame\":[[null,null]]}\n";
-    let write = |text: &str| std::fs::write(&path, text).expect("written");
-    let peak = |flags: &str| {
-        let run = taxel(&format!("frames {} --json {flags}", path.display()), "");
-        assert_eq!(run.status, Some(0), "{run:?}");
-        let answer: Value = serde_json::from_str(&run.stdout).expect("JSON");
-        answer
-    };
-    write(&format!("{none}{{\"frame\":[[-5,-4]]}}\n{none}"));
-    assert_eq!(peak("")["channels"][0]["peak"], 1);
-    assert_eq!(peak("--peak --at-least 0")["frame"], 1);
-    assert_eq!(peak("--peak --at-least 0 --tare 2")["frame"], 1);
-    write(none);
-    assert!(peak("")["channels"][0]["peak"].is_null());
-    let empty = "{\"frame\":[[null,null]]}\n";
-    let message = "standard input: no frame has a cell with a value, so none is the peak";
-    for (text, flags) in [
-        (empty.repeat(3), ""),
-        (empty.repeat(3), "--tare 1"),
-        ("{\"frame\":[[null,7]]}\n".to_owned(), "--crop 0,0,1x1"),
-    ] {
-        let run = taxel(
-            &format!("frames - --peak --at-least 1 --json {flags}"),
-            &text,
-        );
+    let frames = format!("{none}{{\"frame\":[[-5,-4]]}}\n{none}");
+    for flags in ["", "--tare 2"] {
+        let line = format!("frames - --peak --at-least 0 --json {flags}");
+        assert_eq!(answers(&taxel(&line, &frames))[0]["frame"], 1);
+        let run = taxel(&line, none.repeat(3));
+        let message = "standard input: no frame has a cell with a value, so none is the peak";
         super::refused(&run, 1, message);
     }
 }
@@ -999,52 +619,6 @@ fn the_peak_is_found_after_the_gain_is_applied() {
     };
     assert_eq!(peak(""), 0);
     assert_eq!(peak(&format!("--gain {}", gain.display())), 1);
-}
-
-#[test]
-fn a_recording_of_more_cells_than_an_imprint_is_listed() {
-    let frame = format!("{{\"frame\":[[{}]]}}\n", vec!["1"; 70].join(","));
-    let run = taxel("frames - --json", frame.as_str());
-    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
-    let listed: Value = serde_json::from_str(&run.stdout).expect("JSON");
-    assert_eq!(listed["channels"][0]["frames"], 1);
-    // A crop of it has to fit.
-    let run = taxel("frames - --json --crop 0,0,71x1", frame);
-    assert_eq!(run.status, Some(1), "{run:?}");
-}
-
-#[test]
-fn only_the_first_twenty_warnings_are_shown() {
-    let head = "DATA_TYPE MOVIE\nROWS 1\nCOLS 2\nUNITS raw\nASCII_DATA @@\n";
-    let wrong = |frames: u32| -> String {
-        let frame = |number| format!("\nFrame {number}, 0,,,,,Raw Sum=,,9\n1,2\n");
-        (1..=frames).map(frame).collect()
-    };
-    let warnings = |frames: u32| {
-        let run = taxel("frames - --json", format!("{head}{}\n@@\n", wrong(frames)));
-        assert_eq!(run.status, Some(0), "{run:?}");
-        run.stderr.lines().map(str::to_owned).collect::<Vec<_>>()
-    };
-    let all = warnings(20);
-    assert_eq!(all.len(), 20);
-    assert!(all[19].contains("frame 19"), "{}", all[19]);
-    let some = warnings(22);
-    assert_eq!(some[..20], all[..]);
-    assert_eq!(some[20..], ["warning: standard input: 2 more of these"]);
-}
-
-#[test]
-fn an_array_that_may_be_many_frames_is_noted_with_the_flags_that_say_so() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("flat.npy");
-    std::fs::write(&path, array("(100, 16)", false, &[0.0; 1600])).expect("written");
-    let path = path.to_str().expect("UTF-8");
-    let expected = "taken as one frame, though each of its 100 rows may be a frame of 16 values; if so, give --rows and \
-                    --columns\n";
-    for line in ["frames", "watch --once --at-least 1"] {
-        let run = taxel(&format!("{line} {path}"), "");
-        assert!(run.stderr.contains(expected), "{line}: {}", run.stderr);
-    }
 }
 
 /// Labels may be texts, force is that of the active cells after the tare, and what does not exist is empty.

@@ -68,12 +68,6 @@ fn a_stream_is_a_filter_in_a_pipeline() {
         run.stderr,
         "warning: standard input: 1 frame dropped so far (torn, short, long or garbled), the last: 1 x (line 10, column 2: found \"x\", expected a number; if it is the label: --label-column 2)\n"
     );
-    let lines = "1 2 3 4\n1 2 3 4\n1 2 3\n1 2 3 4\n";
-    let run = taxel("watch - --rows 1 --columns 4", lines);
-    assert_eq!(
-        run.stderr,
-        "warning: standard input: 1 frame dropped so far (torn, short, long or garbled), the last: 1 2 3 (line 3: found 3 values, expected 4)\n"
-    );
     let run = taxel("watch - --once", [0xff; 100]);
     assert_eq!(run.status, Some(1));
     assert!(
@@ -97,30 +91,20 @@ fn a_stream_is_a_filter_in_a_pipeline() {
             "error: standard input: empty, expected frames of a sensor\n"
         )
     );
-    // The lines are numbers, but do not make up a frame.
-    let run = taxel("watch - --rows 2 --columns 2", "1 2\n3\n\n");
-    let numbers = "7 bytes but no frame; the last one dropped: line 2: found 1 value, expected 2";
-    assert!(run.stderr.contains(numbers), "{}", run.stderr);
-    // Recordings are not streams, except those that programs and boards also send.
-    for (name, format) in [
-        ("u2.npy", "npy"),
-        ("xsensor.csv", "xsensor"),
-        ("tekscan.asf", "tekscan"),
-    ] {
-        let bytes = fs::read(sample(name)).expect("a sample");
-        let refused = format!("standard input: a recording ({format}), not a stream");
-        for flags in ["--once", "", "--rows 4 --columns 5"] {
-            let run = taxel(&format!("watch - {flags}"), bytes.as_slice());
-            let message = format!("{refused}; save it to a file, then type taxel frames FILE");
-            super::refused(&run, 1, &message);
-        }
-        let mut child = program(&["watch", "-", "--once"], "C.UTF-8");
-        let input = fs::File::open(sample(name)).expect("a sample");
-        let run = child.stdin(input).output().expect("it ends");
-        let said = String::from_utf8_lossy(&run.stderr).into_owned();
-        assert!(said.contains(&refused), "{name}: {said}");
-    }
+    // A recording is not a stream.
+    let bytes = fs::read(sample("u2.npy")).expect("a sample");
+    let run = taxel("watch - --once", bytes);
+    let message = "standard input: a recording (npy), not a stream; save it to a file, then type taxel frames FILE";
+    super::refused(&run, 1, message);
     misused("watch - --once --speed 2", "the argument '--once'");
+    for (flag, why) in [
+        ("baud 9600", "standard input: it is for serial lines"),
+        ("loop", "a stream: it is for recordings"),
+    ] {
+        let name = flag.split(' ').next().expect("a name");
+        let run = taxel(&format!("watch - --format lines --{flag}"), stream(0..3));
+        super::refused(&run, 2, &format!("--{name} has no effect on {why}"));
+    }
     misused("watch - --write touch.txt", "invalid value 'touch.txt'");
 }
 
@@ -271,18 +255,6 @@ fn the_first_frame_of_a_stream_is_answered_before_the_second_comes() {
 }
 
 #[test]
-fn a_first_frame_that_does_not_fit_the_gain_is_an_error() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let gain = folder.path().join("gain.csv");
-    fs::write(&gain, "1,2,3\n").expect("written");
-    let line = format!("watch - --rows 2 --columns 2 --gain {}", gain.display());
-    let run = taxel(&line, stream(0..3));
-    assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""));
-    let said = "the gain has 3 columns and 1 row";
-    assert!(run.stderr.contains(said), "{}", run.stderr);
-}
-
-#[test]
 fn a_fifo_is_read_until_its_writer_closes_it() {
     let folder = tempfile::tempdir().expect("a folder");
     let fifo = folder.path().join("frames");
@@ -303,75 +275,6 @@ fn a_fifo_is_read_until_its_writer_closes_it() {
         "{}",
         run.stderr
     );
-}
-
-#[test]
-fn a_signal_before_the_first_frame_is_not_an_error() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let fifo = folder.path().join("frames");
-    if !wait::fifo(&fifo) {
-        return;
-    }
-    for sent in ["", "1 2\n3"] {
-        let child = started(&["watch", fifo.to_str().expect("UTF-8")]);
-        let mut writer = wait::writer_of(&fifo);
-        writer.write_all(sent.as_bytes()).expect("it is read");
-        // The program listens for signals before it opens its source.
-        let id = rustix::process::Pid::from_child(&child);
-        rustix::process::kill_process(id, rustix::process::Signal::TERM).expect("it runs still");
-        let run = super::finish(child, b"");
-        let said = (run.status, run.stderr.as_str());
-        assert_eq!(said, (Some(128 + 15), ""), "{sent:?}");
-    }
-}
-
-#[test]
-fn only_a_serial_line_has_a_baud_rate() {
-    let run = taxel("watch - --baud 9600", stream(0..3));
-    let message = "--baud has no effect on standard input: it is for serial lines";
-    super::refused(&run, 2, message);
-    let run = taxel("watch no/sensor --baud 9600", "");
-    assert!(
-        run.stderr.contains("no/sensor: cannot open"),
-        "{}",
-        run.stderr
-    );
-}
-
-#[test]
-fn a_last_line_without_a_line_break_counts_only_if_the_source_is_read_to_its_end() {
-    let input = "1,2,3,40\n5,6,7,8";
-    let (live, once) = (
-        "watch - --rows 2 --columns 2",
-        "watch - --rows 2 --columns 2 --once",
-    );
-    let run = taxel(live, input);
-    assert_eq!(
-        (run.status, lines(&run.stdout).len()),
-        (Some(0), 1),
-        "{}",
-        run.stderr
-    );
-    let said = "the last: 5,6,7,8 (line 2: no line break after it)";
-    assert!(run.stderr.contains(said), "{}", run.stderr);
-    let run = taxel(once, input);
-    assert_eq!(
-        (run.status, lines(&run.stdout).len()),
-        (Some(0), 2),
-        "{}",
-        run.stderr
-    );
-    assert_eq!(run.stderr, "");
-}
-
-#[test]
-fn frames_of_another_size_do_not_end_the_stream() {
-    let wide = "1 2 3\n\n".repeat(5);
-    let input = stream(0..3) + &wide + &stream(3..7);
-    let run = taxel("watch - --at-least 1", &input);
-    assert_eq!((run.status, lines(&run.stdout).len()), (Some(0), 7));
-    let said = "5 frames dropped so far";
-    assert!(run.stderr.contains(said), "{}", run.stderr);
 }
 
 /// Returns true if a program has locked a file, which is how it claims a serial line.
@@ -493,57 +396,35 @@ fn the_description_of_a_recording_is_read_with_it() {
         serde_json::json!({"at_least": 9, "from": "flag"})
     );
     assert_eq!(plain.get("tare"), None);
-    // A description that is broken, of another version, empty or of another program is reported, and so is a missing
-    // one.
+    // A description that is broken or missing is reported.
     for (text, told) in [
-        (
-            "{\"format\":\"taxel-touch/1\",\"rule\":{\"percent\":0}}",
-            "touch.json: rule: ",
-        ),
         (
             "{\"format\":\"taxel-touch/1\",\"ru",
             "touch.json: line 1, column 29: EOF ",
         ),
         (
             "{\"format\":\"taxel-touch/2\"}",
-            "touch.json: format: \"taxel-touch/2\" is unknown to this version, which reads \"taxel-touch/1\"; the recording's threshold",
+            "touch.json: format: \"taxel-touch/2\" is unknown",
         ),
         (
             "",
-            "touch.json: empty or not written by taxel; the recording's threshold",
-        ),
-        (
-            "{\"format\":1}",
-            "touch.json: empty or not written by taxel",
+            "touch.json: missing; the recording's threshold and tare are unknown",
         ),
     ] {
-        fs::write(file.with_extension("json"), text).expect("written");
-        warns_of(path, told);
-    }
-    // A description that links to itself cannot be read, either.
-    let beside = file.with_extension("json");
-    fs::remove_file(&beside).expect("removed");
-    warns_of(
-        path,
-        "touch.json: missing; the recording's threshold and tare are unknown",
-    );
-    std::os::unix::fs::symlink(&beside, &beside).expect("made");
-    warns_of(path, "touch.json: cannot read: ");
-}
-
-/// Checks that both commands warn about the file beside a recording, and still read its frames; no warning if `told`
-/// is empty.
-fn warns_of(path: &str, told: &str) {
-    for line in [
-        format!("frames {path} --peak --at-least 9"),
-        format!("watch {path} --once --at-least 9"),
-    ] {
-        let run = taxel(&line, "");
-        assert_eq!(run.status, Some(0), "{}", run.stderr);
-        assert!(!run.stdout.is_empty(), "{line}");
-        let (lines, expected) = (run.stderr.lines().count(), usize::from(!told.is_empty()));
-        assert_eq!(lines, expected, "{line}: {}", run.stderr);
-        assert!(run.stderr.contains(told), "{line}: {}", run.stderr);
+        let beside = file.with_extension("json");
+        match text {
+            "" => fs::remove_file(beside).expect("removed"),
+            _ => fs::write(beside, text).expect("written"),
+        }
+        for line in ["frames --peak", "watch --once"] {
+            let run = taxel(&format!("{line} {path} --at-least 9"), "");
+            assert_eq!(run.status, Some(0), "{}", run.stderr);
+            assert!(
+                !run.stdout.is_empty() && run.stderr.contains(told),
+                "{line}: {}",
+                run.stderr
+            );
+        }
     }
 }
 
@@ -586,18 +467,6 @@ fn a_lost_connection_is_made_again() {
     let refused = taxel("watch tcp://127.0.0.1:1", "");
     assert_eq!(refused.status, Some(1));
     assert!(refused.stderr.contains("cannot open"), "{}", refused.stderr);
-}
-
-#[test]
-fn an_address_without_tcp_is_refused_with_a_hint() {
-    let message = "robot:7000: cannot open: no such file or folder";
-    let told = format!("{message}; a connection is written tcp://robot:7000");
-    super::refused(&taxel("watch robot:7000", ""), 1, &told);
-    for name in ["robot:port", "robot:70000", ":7000", "no/robot:7000"] {
-        let run = taxel(&format!("watch {name}"), "");
-        let message = message.replace("robot:7000", name);
-        super::refused(&run, 1, &message);
-    }
 }
 
 /// Returns frames as JSON lines at intervals of a tenth of a second, by the clock of the sensor.
@@ -725,59 +594,5 @@ fn times_continue_when_a_connection_is_made_again() {
         listed.stdout.contains("step      0.1 s\n"),
         "{}",
         listed.stdout
-    );
-}
-
-/// Kills at a hundred random moments and prints the numbers:
-/// `cargo test --test cli a_hundred -- --ignored --nocapture`.
-#[test]
-#[ignore = "takes minutes"]
-fn a_hundred_kills_at_random_lose_at_most_a_second() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let has_numpy = python_has("numpy");
-    let (mut random, mut most, mut opened) = (7_u64, 0.0_f64, 0);
-    for round in 0..100 {
-        random = random
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        let life = Duration::from_millis(200 + (random >> 33) % 2500);
-        let file = folder.path().join(format!("touch-{round}.npy"));
-        let path = file.to_str().expect("UTF-8");
-        let mut child = started(&["watch", "-", "--format", "lines", "--write", path]);
-        let mut input = child.stdin.take().expect("piped");
-        let output = child.stdout.take().expect("piped");
-        let drained = std::thread::spawn(move || BufReader::new(output).lines().count());
-        let start = std::time::Instant::now();
-        let mut times = Vec::new();
-        while start.elapsed() < life {
-            let number = u32::try_from(times.len()).expect("few");
-            input
-                .write_all(stream(number..number + 1).as_bytes())
-                .expect("it reads");
-            times.push(start.elapsed());
-            std::thread::sleep(Duration::from_millis(2));
-        }
-        child.kill().expect("it is killed");
-        let killed = start.elapsed();
-        child.wait().expect("it ends");
-        drained.join().expect("it is drained");
-        let run = taxel(&format!("frames {path} --all --at-least 1 --json"), "");
-        let frames = lines(&run.stdout);
-        for (number, frame) in frames.iter().enumerate() {
-            assert_eq!(frame["sum"], 9 + number, "{frame}");
-        }
-        // The time from the sending of the first missing frame to the kill.
-        let lost = times
-            .get(frames.len())
-            .map_or(0.0, |sent| killed.saturating_sub(*sent).as_secs_f64());
-        most = most.max(lost);
-        if has_numpy && file.exists() {
-            numpy(&file);
-            opened += 1;
-        }
-        assert!(lost <= 1.0, "round {round}: {lost} s lost");
-    }
-    println!(
-        "100 kills: numpy opened {opened}, taxel 100, at most {most:.2} s lost, no wrong frame"
     );
 }
