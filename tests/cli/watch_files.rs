@@ -12,7 +12,7 @@ use taxel_files::storage::Existing;
 
 use super::array;
 use super::watch::{lines, sample, started, stream};
-use super::{finish, program, run_in, sh, taxel};
+use super::{finish, program, sh, taxel};
 
 /// Runs a command that must fail, and returns its message.
 fn failure(line: &str, input: impl AsRef<[u8]>) -> String {
