@@ -6,8 +6,7 @@
 //!  0 · · a █ b ·    NA   40  52  +12                 █ in both, a b in one only | descriptors of the main regions
 //! ```
 //! On a wide screen A and B stand beside the view of their differences; elsewhere Tab shows one after the other. If
-//! there is no room for the descriptors beside a view, they are a view of their own. Parts that do not fit scroll;
-//! arrows show where there is more.
+//! there is no room for the descriptors beside a view, they are a view of their own. Parts that do not fit scroll.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -22,251 +21,171 @@ use crate::tui::app::change::refuse;
 use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::page::{Flow, Page, Slot, Wheel};
 use crate::tui::app::state::App;
-use crate::tui::grid::{CellSize, Grid, Look, RULER, Window};
+use crate::tui::grid::{CellSize, Grid, Look, RULER, Window, beside_rulers};
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::widget::theme::{Role, Theme, spelling};
-use crate::tui::widget::write;
-use crate::tui::widget::write::{around, narrow};
-use ComparedView::{Descriptors, Difference, First, Second};
+use crate::tui::widget::write::{self, around, narrow};
 
 const GAP: u16 = 2;
+/// The views of imprints: the differences, A, B.
+const GRIDS: usize = 3;
+const LONGEST: usize = 24;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum ComparedView {
-    Difference,
-    First,
-    Second,
-    Descriptors,
-}
-
-const VIEWS: [ComparedView; 4] = [Difference, First, Second, Descriptors];
-
-const GRIDS: &[ComparedView] = VIEWS.split_at(3).0;
-
-type TableRow = [String; 4];
-
-#[derive(Clone, Debug)]
-pub struct Comparison {
+pub(crate) struct Comparison {
     imprints: Box<[Imprint; 2]>,
     names: [String; 2],
-    table: Vec<TableRow>,
+    table: Vec<[String; 4]>,
+    /// A view of imprints, or the descriptors.
     view: usize,
-    top: u16,
-    left: u16,
-}
-
-struct ComparedPanes {
-    views: Vec<(ComparedView, Rect)>,
-    table: Option<Rect>,
+    /// The columns and rows that are scrolled over.
+    scrolled: (u16, u16),
 }
 
 impl Comparison {
     /// If one has fewer columns or rows, the missing taxels count as inactive.
-    pub fn new(first: (String, &Imprint), second: (String, &Imprint)) -> Self {
+    pub(crate) fn new(first: (String, &Imprint), second: (String, &Imprint)) -> Self {
         let size = first.1.size().union(second.1.size());
         let imprints = [first.1, second.1].map(|imprint| imprint.resized(size));
-        let table = table(&imprints);
         Self {
+            table: table(&imprints),
             imprints: Box::new(imprints),
             names: [first.0, second.0],
-            table,
             view: 0,
-            top: 0,
-            left: 0,
+            scrolled: (0, 0),
         }
     }
 
-    pub fn next_view(&mut self, by: i8, columns: u16) {
-        let views = self.views(columns);
-        self.view = around(self.view.min(views.len() - 1), by, views.len());
-    }
-
-    /// Scrolls to the right and down, or back if negative.
-    pub fn scroll(&mut self, (columns, rows): (i16, i16), area: Rect) -> bool {
-        let (most_left, most_top) = self.hidden(area);
-        let moved =
-            |now: u16, by: i16, most: u16| now.min(most).saturating_add_signed(by).min(most);
-        self.left = moved(self.left, columns, most_left);
-        self.top = moved(self.top, rows, most_top);
-        (most_left, most_top) != (0, 0)
-    }
-
-    fn hidden(&self, area: Rect) -> (u16, u16) {
-        let panes = self.panes(area);
-        let [first, _] = &*self.imprints;
-        let views = panes.views.iter().map(|&(_, area)| {
-            let grid = self.grid(area);
-            let columns = first.columns() - grid.columns.count;
-            (columns.into(), (first.rows() - grid.rows.count).into())
-        });
-        let table = panes.table.map(|area| (0, self.rows_beyond(area.height)));
-        let all = views.chain(table);
-        all.fold((0, 0), |most, one| (most.0.max(one.0), most.1.max(one.1)))
-    }
-
-    fn rows_beyond(&self, lines: u16) -> u16 {
-        narrow(self.table.len()).saturating_sub(lines)
-    }
-
-    fn panes(&self, area: Rect) -> ComparedPanes {
-        let body = write::below(area, HEADING);
-        let table = self.widths().iter().sum::<u16>() + 3 * GAP;
-        let views = self.views(body.width);
-        let view = views[self.view.min(views.len() - 1)];
-        if view == Descriptors {
-            let table = Some(body);
-            return ComparedPanes {
-                views: Vec::new(),
-                table,
-            };
-        }
-        let all = 3 * self.width(2) + table <= body.width;
-        let shown = if all { GRIDS } else { &[view] };
-        // Taxels of two characters, or else of one, leave the room that the descriptors need.
-        let beside = if views == GRIDS { table } else { 0 };
-        let room = body.width.saturating_sub(beside).max(self.width(1));
-        let room = room.min(body.width);
-        let mut x = body.x;
-        let views = shown.iter().map(|&view| {
-            let width = self.width(2).min((body.x + room).saturating_sub(x));
-            let place = Rect { x, width, ..body };
-            x += width;
-            (view, place)
-        });
-        let views = views.collect();
-        ComparedPanes {
-            views,
-            table: (beside > 0).then(|| write::right_of(body, x)),
-        }
-    }
-
-    fn grid(&self, area: Rect) -> Grid {
-        let [first, _] = &*self.imprints;
-        let room = area.width.saturating_sub(RULER);
-        let size = if 2 * u16::from(first.columns()) <= room {
-            CellSize::Square(1)
-        } else {
-            CellSize::Narrow
-        };
-        // A low view has a row before it has numbers of columns.
-        let above = if area.height > 2 { 2 } else { 1 };
-        let lines = area.height.saturating_sub(above);
-        Grid {
-            x: area.x + RULER,
-            y: area.y + above,
-            size,
-            columns: Window::after(self.left, first.columns(), room / size.columns()),
-            rows: Window::after(self.top, first.rows(), lines),
-        }
-    }
-
+    /// The width of a view whose taxels have this many characters.
     fn width(&self, characters: u16) -> u16 {
         RULER + characters * u16::from(self.imprints[0].columns()) + 1
     }
 
+    /// The widths of the columns of descriptors: those in ASCII, as the layout must not depend on the terminal.
     fn widths(&self) -> [u16; 4] {
+        let width = |text: &str| {
+            let widths = text.chars().map(|sign| spelling(sign).map_or(1, str::len));
+            narrow(widths.sum::<usize>()) + GAP
+        };
         std::array::from_fn(|column| {
-            let widths = self.table.iter().map(|row| ascii_width(&row[column]));
-            narrow(widths.fold(0, usize::max))
+            let widths = self.table.iter().map(|row| width(&row[column]));
+            widths.fold(0, u16::max)
         })
     }
 
-    fn views(&self, columns: u16) -> &'static [ComparedView] {
-        let [symbol, first, second, _] = self.widths();
-        let least = symbol + first + second + 2 * GAP;
-        if self.width(1) + least <= columns {
-            GRIDS
+    /// Whether the values of the descriptors have room beside a view.
+    fn has_table_beside(&self, width: u16) -> bool {
+        let values: u16 = self.widths()[..GRIDS].iter().sum();
+        self.width(1) + values <= width + GAP
+    }
+
+    fn panes(&self, area: Rect) -> (Vec<(usize, Rect)>, Option<Rect>) {
+        let body = write::below(area, 1);
+        let table = self.widths().iter().sum::<u16>() - GAP;
+        let beside = self.has_table_beside(body.width);
+        if self.view >= GRIDS && !beside {
+            return (Vec::new(), Some(body));
+        }
+        let view = self.view.min(GRIDS - 1);
+        let all = 3 * self.width(2) + table <= body.width;
+        let shown = if all { 0..GRIDS } else { view..view + 1 };
+        let room = body.width.saturating_sub(if beside { table } else { 0 });
+        let width = self.width(2).min(room.max(self.width(1)));
+        let mut rest = body;
+        let views = shown.map(|view| {
+            let place = write::left_of(rest, rest.x + width);
+            rest = write::right_of(rest, place.right());
+            (view, place)
+        });
+        let views: Vec<(usize, Rect)> = views.collect();
+        (views, beside.then_some(rest))
+    }
+
+    /// A title stands above the numbers of columns.
+    fn grid(&self, area: Rect) -> Grid {
+        let inner = beside_rulers(write::below(area, 1));
+        let [first, _] = &*self.imprints;
+        let size = if 2 * u16::from(first.columns()) <= inner.width {
+            CellSize::Square(1)
         } else {
-            &VIEWS
-        }
-    }
-
-    fn differing(&self) -> u32 {
-        self.imprints[0].differing(&self.imprints[1]).count()
-    }
-
-    /// Arrows in the heading show where there are more taxels.
-    fn draw_view(&self, view: ComparedView, theme: &Theme, buffer: &mut Buffer, area: Rect) {
-        let [first, second] = &*self.imprints;
-        let grid = self.grid(area);
-        let ((above, below), (left, right)) = (grid.rows.hidden(), grid.columns.hidden());
-        let arrows = [above, below, left, right].into_iter().zip(theme.more());
-        let arrows: String = arrows
-            .filter(|(any, _)| *any)
-            .map(|(_, sign)| sign)
-            .collect();
-        let meaning = match view {
-            Difference => "a: only A, b: only B",
-            First => "A",
-            Second => "B",
-            Descriptors => return,
+            CellSize::Narrow
         };
-        let title = format!("{meaning}  {arrows}");
-        write::text(buffer, area, theme, title.trim_end(), Role::Title);
-        if grid.y > area.y + 1 {
-            // A number that does not fit would touch the descriptors.
-            grid.draw_columns(theme, buffer, grid.characters().0);
+        Grid {
+            x: inner.x,
+            y: inner.y,
+            size,
+            columns: Window::after(
+                self.scrolled.0,
+                first.columns(),
+                inner.width / size.columns(),
+            ),
+            rows: Window::after(self.scrolled.1, first.rows(), inner.height),
         }
-        grid.draw_rows(theme, buffer);
+    }
+
+    /// The columns and rows that can be scrolled over.
+    fn hidden(&self, area: Rect) -> (u16, u16) {
+        let [first, _] = &*self.imprints;
+        let (views, table) = self.panes(area);
+        let views = views.into_iter().map(|(_, place)| {
+            let grid = self.grid(place);
+            let columns = first.columns() - grid.columns.count;
+            (columns.into(), (first.rows() - grid.rows.count).into())
+        });
+        let table = table.map(|area| (0, narrow(self.table.len()).saturating_sub(area.height)));
+        let all = views.chain(table);
+        all.fold((0, 0), |most, one| (most.0.max(one.0), most.1.max(one.1)))
+    }
+
+    fn draw_view(&self, view: usize, theme: &Theme, buffer: &mut Buffer, area: Rect) {
+        let [first, second] = &*self.imprints;
+        let title = ["a: only A, b: only B", "A", "B"][view];
+        write::text(buffer, area, theme, title, Role::Title);
+        let grid = self.grid(area);
+        grid.draw_rulers(theme, buffer);
         grid.draw(buffer, |column, row| {
-            let active = (first.get(column, row), second.get(column, row));
-            let (signs, role) = signs(theme, view, active);
-            let style = theme.style(role);
+            let (one, other) = (first.get(column, row), second.get(column, row));
+            let on = if view == 2 { other } else { one };
+            let state = if on { Role::Chosen } else { Role::Inactive };
+            // A letter instead of the shade shows which of the two has it active.
+            let (signs, role) = match (view, one, other) {
+                (0, true, false) => (['a', 'a'], Role::Key),
+                (0, false, true) => (['b', 'b'], Role::Key),
+                _ => (theme.taxel(state), state),
+            };
             Look {
                 signs,
                 fill: ' ',
-                style,
+                style: theme.style(role),
             }
         });
     }
 
-    /// Draws the descriptors of both imprints and their differences. If they do not fit, the differences are left
-    /// out, since they follow from the values. Arrows show where there are more rows.
     fn draw_table(&self, theme: &Theme, buffer: &mut Buffer, area: Rect) {
-        let widths = self.widths();
-        let whole = widths.iter().sum::<u16>() + 3 * GAP <= area.width;
-        let columns = if whole { 4 } else { 3 };
-        let top = usize::from(self.top.min(self.rows_beyond(area.height)));
-        let visible = usize::from(area.height).saturating_sub(1);
-        let [above, below, ..] = theme.more();
-        let more = [
-            (top > 0, above),
-            (top + visible + 1 < self.table.len(), below),
-        ];
-        let more: String = more
-            .iter()
-            .filter(|(any, _)| *any)
-            .map(|(_, sign)| sign)
-            .collect();
+        let most = self.table.len().saturating_sub(area.height.into());
+        let top = usize::from(self.scrolled.1).min(most);
         let rows = self
             .table
             .iter()
             .take(1)
             .chain(self.table.iter().skip(top + 1));
-        for (index, row) in rows.take(visible + 1).enumerate() {
-            let is_same = row[1] == row[2];
-            let roles = match (index, is_same) {
-                (0, _) => [Role::Title; 2],
-                (_, true) => [Role::Key, Role::Quiet],
-                (_, false) => [Role::Key, Role::Text],
-            };
-            let mut place = write::row(area, index);
-            for (column, width) in widths.into_iter().enumerate().take(columns) {
-                let text = match (index, column) {
-                    (0, 0) => more.as_str().into(),
-                    _ => theme.text(&row[column]),
+        for (index, (row, mut place)) in rows.zip(area.rows()).enumerate() {
+            for (column, width) in self.widths().into_iter().enumerate() {
+                let role = match (index, column, row[1] == row[2]) {
+                    (0, ..) => Role::Title,
+                    (_, 0, _) => Role::Key,
+                    (_, _, true) => Role::Quiet,
+                    _ => Role::Text,
                 };
-                let role = roles[usize::from(column > 0)];
-                write::text(buffer, place, theme, &text, role);
-                place = write::right_of(place, place.x.saturating_add(width + GAP));
+                write::text(buffer, place, theme, &row[column], role);
+                place = write::right_of(place, place.x + width);
             }
         }
     }
 }
 
 /// If nothing is active, counts and sums are 0.
-fn table(imprints: &[Imprint; 2]) -> Vec<TableRow> {
+fn table(imprints: &[Imprint; 2]) -> Vec<[String; 4]> {
     let described = imprints.each_ref().map(|imprint| {
         let regions = regions(imprint);
         let main = main_region(&regions).and_then(|main| regions.get(main));
@@ -289,26 +208,6 @@ fn table(imprints: &[Imprint; 2]) -> Vec<TableRow> {
     std::iter::once(heading).chain(rows).collect()
 }
 
-/// Returns the width of a text in ASCII, which is at least its width in Unicode: the layout must not depend on the
-/// terminal.
-fn ascii_width(text: &str) -> usize {
-    let widths = text.chars().map(|sign| spelling(sign).map_or(1, str::len));
-    widths.sum()
-}
-
-/// Returns the characters of a taxel in a view, and their role. A letter instead of the shade shows which of the two
-/// imprints has it active.
-fn signs(theme: &Theme, view: ComparedView, active: (bool, bool)) -> ([char; 2], Role) {
-    let role = |on: bool| if on { Role::Chosen } else { Role::Inactive };
-    match (view, active) {
-        (Difference, (true, false)) => (['a', 'a'], Role::Key),
-        (Difference, (false, true)) => (['b', 'b'], Role::Key),
-        (First | Difference | Descriptors, (on, _)) | (Second, (_, on)) => {
-            (theme.taxel(role(on)), role(on))
-        }
-    }
-}
-
 fn text(descriptor: &Descriptor, measured: Value) -> String {
     let text = value::text(measured, descriptor.dimension);
     text.unwrap_or_else(|| "–".to_owned())
@@ -318,11 +217,8 @@ fn signed(descriptor: &Descriptor, by: Value) -> String {
     let sign = |number: f64| {
         let text = text(descriptor, Value::Number(number));
         let is_zero = text.bytes().all(|byte| !matches!(byte, b'1'..=b'9'));
-        if number > 0.0 && !is_zero {
-            format!("+{text}")
-        } else {
-            text
-        }
+        let plus = if number > 0.0 && !is_zero { "+" } else { "" };
+        format!("{plus}{text}")
     };
     match by {
         Value::Number(number) => sign(number),
@@ -351,24 +247,30 @@ fn difference(descriptor: &Descriptor, first: Value, second: Value) -> Value {
 
 impl Page for Comparison {
     fn on(&mut self, app: &mut App, message: &Message) -> Flow {
-        let by = match *message {
-            Message::Scroll(lines) => Some((0, lines)),
-            Message::ScrollTo(Endpoint::First) => Some((0, i16::MIN)),
-            Message::ScrollTo(Endpoint::Last) => Some((0, i16::MAX)),
-            Message::Choose(Arrow::Left) => Some((-1, 0)),
-            Message::Choose(Arrow::Right) => Some((1, 0)),
-            _ => None,
+        let Some(area) = app.panes().map(|panes| panes.area(self.slot())) else {
+            return Flow::Stay;
         };
-        if let Some(panes) = app.panes() {
-            let area = panes.area(self.slot());
-            if let Message::Field(by) = *message {
-                self.next_view(by, area.width);
-            } else if let Some(by) = by
-                && !self.scroll(by, area)
-            {
-                refuse(app, "all of it is visible");
+        let by = match *message {
+            Message::Field(by) => {
+                let views = GRIDS + usize::from(!self.has_table_beside(area.width));
+                self.view = around(self.view.min(views - 1), by, views);
+                return Flow::Stay;
             }
+            Message::Scroll(lines) => (0, lines),
+            Message::ScrollTo(Endpoint::First) => (0, i16::MIN),
+            Message::ScrollTo(Endpoint::Last) => (0, i16::MAX),
+            Message::Choose(Arrow::Left) => (-1, 0),
+            Message::Choose(Arrow::Right) => (1, 0),
+            _ => return Flow::Stay,
+        };
+        let most = self.hidden(area);
+        if most == (0, 0) {
+            refuse(app, "all of it is visible");
         }
+        let moved =
+            |now: u16, by: i16, most: u16| now.min(most).saturating_add_signed(by).min(most);
+        let (left, top) = self.scrolled;
+        self.scrolled = (moved(left, by.0, most.0), moved(top, by.1, most.1));
         Flow::Stay
     }
 
@@ -387,27 +289,20 @@ impl Page for Comparison {
         buffer: &mut Buffer,
         area: Rect,
     ) -> Option<Position> {
-        // On a narrow screen the names are cut, not the number, and neither of them leaves no room for the other.
-        let differ = differing(self.differing());
-        let labels = ["   A: ", "   B: "];
-        let fixed = write::width(&differ) + labels.concat().len();
-        let room = usize::from(area.width).saturating_sub(fixed);
-        let [first, second] = self.names.each_ref().map(|name| theme.text(name));
-        let for_second = write::width(&second).min(room / 2);
-        let first = write::fitted(&first, room - for_second, theme);
+        let differ = differing(self.imprints[0].differing(&self.imprints[1]).count());
         let pieces = [
-            (differ.as_str(), Role::Title),
-            (labels[0], Role::Key),
-            (&*first, Role::Text),
-            (labels[1], Role::Key),
-            (&*second, Role::Text),
+            (&*differ, Role::Title),
+            ("   A: ", Role::Key),
+            (&self.names[0], Role::Text),
+            ("   B: ", Role::Key),
+            (&self.names[1], Role::Text),
         ];
         write::line(buffer, area, theme, pieces);
-        let panes = self.panes(area);
-        for (view, place) in panes.views {
+        let (views, table) = self.panes(area);
+        for (view, place) in views {
             self.draw_view(view, theme, buffer, place);
         }
-        if let Some(place) = panes.table {
+        if let Some(place) = table {
             self.draw_table(theme, buffer, place);
         }
         None
@@ -430,14 +325,10 @@ impl Page for Comparison {
     }
 }
 
-const HEADING: u16 = 1;
-
-pub fn heading(what: &str) -> String {
-    let mut name: String = what.chars().take(LONGEST).collect();
-    if name.chars().count() < what.chars().count() {
-        name.push('…');
+/// Cuts the name of what is compared.
+pub(crate) fn heading(what: &str) -> String {
+    match what.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &what[..end]),
+        None => what.to_owned(),
     }
-    name
 }
-
-const LONGEST: usize = 24;

@@ -49,8 +49,9 @@ pub(super) static TAB: Tab = Tab {
 
 const LETTERS: u8 = 62;
 const TINTS: u8 = 6;
+const SHADE_COUNT: u8 = 5;
 /// Coverages with different shades: what a picture has instead of colours.
-const SHADES: [f64; 5] = [0.0, 0.1, 0.3, 0.7, 1.0];
+const SHADES: [f64; SHADE_COUNT as usize] = [0.0, 0.1, 0.3, 0.7, 1.0];
 
 /// The most cells along a side of a drawing: more could not be told apart.
 const DRAWN: u64 = 400;
@@ -341,7 +342,7 @@ fn draw_cells(theme: &Theme, results: &Results, pane: &Pane, buffer: &mut Buffer
     let signs = match (pane.is_picture(), has_colours(theme)) {
         (false, _) => signs(ids, columns, LETTERS),
         (true, true) => signs(ids, columns, TINTS),
-        (true, false) => signs(ids, columns, narrow(SHADES.len()) as u8),
+        (true, false) => signs(ids, columns, SHADE_COUNT),
     };
     for (line, row) in signs
         .chunks(columns * usize::from(pane.lines))

@@ -14,12 +14,10 @@ use std::time::Duration;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use taxel_core::parameter::Parameter;
-use taxel_core::pose::{
-    Anchor, Axis, DecimalRange, GivenRanges, GridError, MAX_POSES, PoseGrid, Ranges, default_ranges,
-};
+use taxel_core::pose::{Anchor, Axis, DecimalRange, GivenRanges, PoseGrid, Ranges, default_ranges};
 use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
-use taxel_files::formats::value::{counted, grouped, time_in_words};
+use taxel_files::formats::value::{counted, time_in_words};
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::Message;
@@ -88,22 +86,18 @@ pub(crate) struct RangesForm {
     source: Source,
     form: FieldList<RangeField>,
     anchor: Anchor,
+    /// The number of taxels that no sweep of the shape has.
     by_hand: u32,
-    grid: Result<PoseGrid, FormError>,
-    measured: Option<Measured>,
-}
-
-struct Measured {
-    grid: PoseGrid,
-    /// None if there are too many orientations to count.
+    grid: Result<PoseGrid, String>,
+    /// The poses that the sensor cuts off, unless there are too many orientations to count.
     cut_off: Option<u64>,
-    /// The time that its sweep takes, once a worker has measured it.
+    /// The time that the sweep takes, once a job has measured it.
     time: Option<Duration>,
 }
 
 impl RangesForm {
     /// The ranges are those of an earlier sweep if there is one, otherwise the last accepted ones if they fit, otherwise
-    /// the defaults. `by_hand` is the number of taxels that no sweep of the shape has.
+    /// the defaults.
     pub(super) fn new(
         (source, sensor, by_hand): (Source, Sensor, u32),
         earlier: Option<&PoseGrid>,
@@ -121,19 +115,16 @@ impl RangesForm {
                 input: TextField::new(text, LONGEST),
             }
         });
-        let form = FieldList::new(fields.collect(), true, sensor);
-        let anchor = match (earlier, last) {
-            (Some(grid), _) => grid.anchor(),
-            (None, Some(last)) => last.anchor,
-            (None, None) => Anchor::default(),
-        };
+        let anchor = earlier.map(PoseGrid::anchor);
+        let anchor = anchor.or(last.map(|last| last.anchor));
         let mut form = Self {
-            grid: grid_of(&form, &source, anchor),
+            form: FieldList::new(fields.collect(), true, sensor),
             source,
-            form,
-            anchor,
+            anchor: anchor.unwrap_or_default(),
             by_hand,
-            measured: None,
+            grid: Err(String::new()),
+            cut_off: None,
+            time: None,
         };
         form.follow();
         form.form.set_focus(Some(0));
@@ -144,12 +135,8 @@ impl RangesForm {
     fn propose(&mut self) -> Option<()> {
         let mut given = GivenRanges::default();
         let mut orientations = 1;
-        for field in self
-            .form
-            .fields()
-            .iter()
-            .filter(|field| !field.is_proposed())
-        {
+        let fields = self.form.fields().iter();
+        for field in fields.filter(|field| !field.is_proposed()) {
             let range: DecimalRange = field.text().parse().ok()?;
             if !matches!(field.axis, Axis::X0 | Axis::Y0) {
                 orientations *= range.count();
@@ -170,17 +157,47 @@ impl RangesForm {
         Some(())
     }
 
-    fn follow(&mut self) {
+    /// Makes the grid of the fields. Returns it if it is a new one.
+    fn follow(&mut self) -> Option<&PoseGrid> {
         self.propose();
-        self.grid = grid_of(&self.form, &self.source, self.anchor);
+        let grid = self.made();
+        if grid == self.grid {
+            return None;
+        }
+        (self.grid, self.cut_off, self.time) = (grid, None, None);
+        let grid = self.grid.as_ref().ok()?;
+        if grid.rows() / grid.rows_per_orientation() <= MOST_ORIENTATIONS {
+            self.cut_off = Some(grid.poses_beyond_sensor());
+        }
+        Some(grid)
     }
 
-    pub(super) fn remembered(&self) -> RememberedRanges {
-        let own = self
-            .form
-            .fields()
-            .iter()
-            .filter(|field| !field.is_proposed());
+    fn made(&self) -> Result<PoseGrid, String> {
+        if let Some((_, error)) = self.form.error() {
+            return Err(error.full);
+        }
+        let mut ranges = Ranges::default();
+        for field in self.form.fields() {
+            ranges[field.axis] = field.text().parse().unwrap_or(ranges[field.axis]);
+        }
+        let (source, sensor) = (self.source.clone(), *self.form.sensor());
+        let grid = PoseGrid::new(source, sensor, self.anchor, ranges);
+        grid.map_err(|error| error.to_string())
+    }
+
+    pub(super) fn grid(&self) -> Option<&PoseGrid> {
+        self.grid.as_ref().ok()
+    }
+
+    pub(super) fn take_estimate(&mut self, grid: &PoseGrid, time: Duration) {
+        if self.grid.as_ref() == Ok(grid) {
+            self.time = Some(time);
+        }
+    }
+
+    fn remembered(&self) -> RememberedRanges {
+        let fields = self.form.fields().iter();
+        let own = fields.filter(|field| !field.is_proposed());
         RememberedRanges {
             of: self.source.kind_name().to_owned(),
             size: self.form.sensor().size(),
@@ -189,73 +206,6 @@ impl RangesForm {
                 .filter_map(|field| Some((field.axis, field.text().parse().ok()?)))
                 .collect(),
         }
-    }
-
-    /// Returns the grid of the fields if it was not measured before. It counts as measured afterwards.
-    pub(super) fn unmeasured(&mut self) -> Option<PoseGrid> {
-        let grid = self.grid.as_ref().ok()?;
-        if self.known().is_some() {
-            return None;
-        }
-        let is_few = grid.rows() / grid.rows_per_orientation() <= MOST_ORIENTATIONS;
-        self.measured = Some(Measured {
-            cut_off: is_few.then(|| grid.poses_beyond_sensor()),
-            time: None,
-            grid: grid.clone(),
-        });
-        Some(grid.clone())
-    }
-
-    fn known(&self) -> Option<&Measured> {
-        let measured = self.measured.as_ref();
-        measured.filter(|known| self.grid.as_ref() == Ok(&known.grid))
-    }
-
-    pub(super) fn take_estimate(&mut self, grid: &PoseGrid, time: Duration) {
-        let known = self.measured.as_mut().filter(|known| known.grid == *grid);
-        if let Some(known) = known {
-            known.time = Some(time);
-        }
-    }
-
-    pub(super) fn accepted(&mut self) -> Result<PoseGrid, String> {
-        if let Some((index, _)) = self.form.error() {
-            self.form.set_focus(Some(index));
-        }
-        self.grid.clone().map_err(|error| error.full)
-    }
-
-    /// On the anchor, Space, a click and the arrows to the sides choose the other one.
-    pub(super) fn take(&mut self, message: &Message) -> Result<(), String> {
-        let on_anchor = self.form.focus().is_none();
-        match message {
-            Message::Defaults => {
-                let of = (self.source.clone(), *self.form.sensor(), self.by_hand);
-                let (focus, measured) = (self.form.focus(), self.measured.take());
-                *self = Self::new(of, None, None);
-                self.measured = measured;
-                self.form.set_focus(focus);
-            }
-            Message::ToField(None)
-            | Message::Type(' ')
-            | Message::Choose(Arrow::Left | Arrow::Right)
-                if on_anchor =>
-            {
-                self.anchor = match self.anchor {
-                    Anchor::Corner => Anchor::Centre,
-                    Anchor::Centre => Anchor::Corner,
-                };
-                self.follow();
-            }
-            Message::Type(_) if on_anchor => {
-                return Err("an arrow or Space chooses the other anchor".to_owned());
-            }
-            message => {
-                self.form.take(message);
-                self.follow();
-            }
-        }
-        Ok(())
     }
 
     /// The title is above them; below them are three lines, or as many as the rows leave, but at least one.
@@ -275,7 +225,7 @@ impl RangesForm {
         let has_focus = self.form.focus().is_none();
         let role = if has_focus { Role::Focus } else { Role::Text };
         let pieces = [
-            (&*format!("{:LABEL$}", "Anchor"), Role::Text),
+            ("Anchor  ", Role::Text),
             ("< ", Role::Quiet),
             (name, role),
             (" > ", Role::Quiet),
@@ -287,82 +237,76 @@ impl RangesForm {
 
     /// Says how many poses there are, or what is wrong with all fields together.
     fn summary(&self) -> Vec<(String, Role)> {
-        let grid = match &self.grid {
-            Ok(grid) => grid,
+        let mut lines = Vec::new();
+        match &self.grid {
+            Ok(grid) => {
+                let time = self.time.map(|time| format!(", {}", about(time)));
+                let poses = counted(grid.poses(), "pose") + &time.unwrap_or_default();
+                lines.push((poses, Role::Text));
+                if let Some(cut_off) = self.cut_off.filter(|&poses| poses > 0) {
+                    let what = if cut_off == grid.poses() {
+                        "every pose".to_owned()
+                    } else {
+                        counted(cut_off, "pose")
+                    };
+                    lines.push((format!("! the sensor cuts off {what}"), Role::Error));
+                }
+            }
             // A wrong field shows its own error.
-            Err(_) if self.form.error().is_some() => return vec![(String::new(), Role::Text)],
-            Err(error) => {
-                let lines = error.brief.lines();
-                return lines
-                    .map(|line| (format!("! {line}"), Role::Error))
-                    .collect();
-            }
-        };
-        let mut poses = counted(grid.poses(), "pose");
-        let known = self.known();
-        if let Some(time) = known.and_then(|known| known.time) {
-            poses += &format!(", {}", about(time));
+            Err(_) if self.form.error().is_some() => lines.push((String::new(), Role::Text)),
+            Err(error) => lines.push((format!("! {error}"), Role::Error)),
         }
-        let mut lines = vec![(poses, Role::Text)];
-        match known.and_then(|known| known.cut_off) {
-            None | Some(0) => {}
-            Some(poses) => {
-                let all = poses == grid.poses();
-                let what = if all {
-                    "every pose".to_owned()
-                } else {
-                    counted(poses, "pose")
-                };
-                lines.push((format!("! the sensor cuts off {what}"), Role::Error));
-            }
+        if self.by_hand > 0 {
+            let taxels = counted(self.by_hand, "taxel");
+            lines.push((format!("without {taxels} set by hand"), Role::Quiet));
         }
         lines
     }
 }
 
-fn grid_of(
-    form: &FieldList<RangeField>,
-    source: &Source,
-    anchor: Anchor,
-) -> Result<PoseGrid, FormError> {
-    if let Some((_, error)) = form.error() {
-        return Err(error);
-    }
-    let mut ranges = Ranges::default();
-    for field in form.fields() {
-        ranges[field.axis] = field.text().parse().unwrap_or(ranges[field.axis]);
-    }
-    let grid = PoseGrid::new(source.clone(), *form.sensor(), anchor, ranges);
-    grid.map_err(|error| FormError {
-        brief: match &error {
-            GridError::Poses(poses) => {
-                let poses = u64::try_from(*poses).unwrap_or(u64::MAX);
-                let most = grouped(MAX_POSES);
-                format!("{}\nexpected at most {most}", counted(poses, "pose"))
-            }
-            _ => error.to_string(),
-        },
-        full: error.to_string(),
-    })
-}
-
 impl Page for RangesForm {
+    /// On the anchor, Space, a click and the arrows to the sides choose the other one.
     fn on(&mut self, app: &mut App, message: &Message) -> Flow {
-        let done = if *message == Message::Accept {
-            self.accepted().map(Some)
-        } else {
-            self.take(message).map(|()| None)
-        };
-        match done {
-            Ok(Some(grid)) => {
-                app.forms.ranges = Some(self.remembered());
-                sweep(app, grid);
-                return Flow::Close;
+        let on_anchor = self.form.focus().is_none();
+        match message {
+            Message::Accept => match self.grid.clone() {
+                Ok(grid) => {
+                    app.forms.ranges = Some(self.remembered());
+                    sweep(app, grid);
+                    return Flow::Close;
+                }
+                Err(error) => {
+                    if let Some((index, _)) = self.form.error() {
+                        self.form.set_focus(Some(index));
+                    }
+                    refuse(app, error);
+                }
+            },
+            Message::Defaults => {
+                let of = (self.source.clone(), *self.form.sensor(), self.by_hand);
+                let focus = self.form.focus();
+                *self = Self::new(of, None, None);
+                self.form.set_focus(focus);
+                measure(app, self);
             }
-            Ok(None) => {}
-            Err(reason) => refuse(app, reason),
+            Message::ToField(None)
+            | Message::Type(' ')
+            | Message::Choose(Arrow::Left | Arrow::Right)
+                if on_anchor =>
+            {
+                self.anchor = match self.anchor {
+                    Anchor::Corner => Anchor::Centre,
+                    Anchor::Centre => Anchor::Corner,
+                };
+            }
+            Message::Type(_) if on_anchor => {
+                refuse(app, "an arrow or Space chooses the other anchor");
+            }
+            message => self.form.take(message),
         }
-        measure(app, self);
+        if self.follow().is_some() {
+            measure(app, self);
+        }
         Flow::Stay
     }
 
@@ -385,26 +329,15 @@ impl Page for RangesForm {
         write::text(buffer, area, theme, &title, Role::Title);
         let (rows, fields) = (self.rows(area), &self.form);
         let mut cursor = rows.draw(theme, fields, (LABEL, INPUT), |_| None, buffer);
-        if let Some((_, row)) = rows
-            .visible()
-            .find(|(index, _)| *index == fields.fields().len())
-        {
+        let mut visible = rows.visible();
+        if let Some((_, row)) = visible.find(|(index, _)| *index == fields.fields().len()) {
             let at = self.draw_anchor(theme, buffer, row);
             cursor = cursor.or(fields.focus().is_none().then_some(at));
         }
-        let mut lines = self.summary();
-        if self.by_hand > 0 {
-            let taxels = counted(self.by_hand, "taxel");
-            lines.push((format!("without {taxels} set by hand"), Role::Quiet));
-        }
-        for (index, (text, role)) in lines.iter().enumerate() {
-            write::text(
-                buffer,
-                write::row(rows.rest(area), index),
-                theme,
-                text,
-                *role,
-            );
+        let mut rest = rows.rest(area);
+        for (text, role) in self.summary() {
+            let lines = write::wrapped(buffer, rest, theme, &text, role);
+            rest = write::below(rest, narrow(lines.max(1)));
         }
         cursor
     }

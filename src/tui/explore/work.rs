@@ -92,14 +92,14 @@ pub(super) fn open_ranges(app: &mut App, earlier: Option<&PoseGrid>) {
     let by_hand = document.source.as_ref();
     let by_hand = by_hand.map_or(0, |_| document.edits.count());
     let of = (source, document.sensor, by_hand);
-    let mut form = RangesForm::new(of, earlier, app.forms.ranges.as_ref());
-    measure(app, &mut form);
+    let form = RangesForm::new(of, earlier, app.forms.ranges.as_ref());
+    measure(app, &form);
     app.open(form);
 }
 
 /// Estimates the time of a sweep: the best of several short ones. A script would not show the same twice.
-pub(super) fn measure(app: &mut App, form: &mut RangesForm) {
-    let Some(grid) = form.unmeasured().filter(|_| app.jobs.has_threads()) else {
+pub(super) fn measure(app: &mut App, form: &RangesForm) {
+    let Some(grid) = form.grid().filter(|_| app.jobs.has_threads()).cloned() else {
         return;
     };
     app.jobs.run(jobs::Slot::Measure, move |progress| {

@@ -9,7 +9,6 @@ use ratatui::layout::{Position, Rect};
 use taxel_core::imprint::Imprint;
 use taxel_core::recognition::{Answer, Evidence};
 use taxel_core::sensor::MatrixSize;
-use taxel_core::source::Source;
 use taxel_files::formats::Name;
 use taxel_files::storage::ModelChoice;
 
@@ -39,13 +38,10 @@ pub(crate) struct Recognition {
     unreadable: Option<ModelChoice>,
     stored: Vec<Name>,
     pub(super) kept: Vec<Imprint>,
-    /// The touch on the matrix, and the shape that left it in its pose, if one did.
+    /// The touch on the matrix.
     pub(super) present: Imprint,
-    source: Option<Source>,
     /// The threshold at which a shape touched the matrix.
     threshold: Option<f64>,
-    kept_source: Option<Source>,
-    present_kept: bool,
     /// The answer about all touches.
     pub(super) answer: Option<Answer>,
     /// The search for the touch on the matrix, and its result.
@@ -78,10 +74,7 @@ impl Recognition {
             stored: Vec::new(),
             kept: Vec::new(),
             present: Imprint::empty(MatrixSize::SMALLEST),
-            source: None,
             threshold: None,
-            kept_source: None,
-            present_kept: false,
             answer: None,
             search: None,
             outlines: None,
@@ -123,7 +116,7 @@ impl Recognition {
     }
 
     pub(super) fn is_new_touch(&self) -> bool {
-        !self.present_kept && !self.present.is_empty()
+        !self.present.is_empty() && self.kept.last() != Some(&self.present)
     }
 
     /// Returns the threshold at which a shape touched the matrix, if the model was trained at another one: the imprints
@@ -156,13 +149,12 @@ impl Recognition {
 /// Follows the matrix. A page that is closed does not.
 fn show(app: &mut App) {
     let (imprint, document) = (app.reading().imprint, app.shown());
-    let (source, threshold) = (document.source.clone(), document.sensor.threshold());
+    let threshold = document.sensor.threshold();
+    let threshold = document.source.as_ref().map(|_| threshold);
     let page = &mut app.recognition;
-    page.threshold = source.as_ref().map(|_| threshold);
-    if imprint != page.present || source != page.source {
-        (page.present, page.source) = (imprint, source);
-        let is_last = page.kept.last() == Some(&page.present);
-        page.present_kept = is_last && page.kept_source == page.source;
+    page.threshold = threshold;
+    if imprint != page.present {
+        page.present = imprint;
         page.ask();
     }
 }
@@ -440,7 +432,6 @@ fn touch(app: &mut App, trained: &TrainedModel) {
     let sensor = app.history.present().sensor;
     let page = &mut app.recognition;
     page.kept.clear();
-    page.present_kept = false;
     let Some((shape, sensor, imprint)) = trained.random_touch(sensor, &mut page.random) else {
         return;
     };
@@ -458,12 +449,10 @@ fn keep(app: &mut App) {
     if page.present.is_empty() {
         return refuse(app, "nothing is touched");
     }
-    if page.present_kept {
+    if !page.is_new_touch() {
         return refuse(app, "this touch is already kept");
     }
     page.kept.push(page.present);
-    page.kept_source = page.source.clone();
-    page.present_kept = true;
     match page.kept.len() {
         1 => inform(app, "1 touch kept; now touch the shape elsewhere"),
         count => inform(app, format!("{count} touches kept")),
@@ -476,7 +465,6 @@ fn forget(app: &mut App) {
         return refuse(app, "no touches are kept");
     }
     page.kept.clear();
-    page.present_kept = false;
     page.ask();
     inform(app, "the kept touches are forgotten");
 }
