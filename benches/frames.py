@@ -69,20 +69,10 @@ class Screen:
             os.execve(TAXEL, [TAXEL, *arguments], environment)
         fcntl.ioctl(self.master, termios.TIOCSWINSZ, struct.pack("HHHH", *size, 0, 0))
         self.bytes = b""
-        self.answers = True
 
     def take(self):
         """Reads the available output."""
-        before = len(self.bytes)
         self.bytes += os.read(self.master, 1 << 16)
-        if self.answers:
-            # The query may have come in two pieces.
-            self.answer(self.bytes[max(0, before - 3):])
-
-    def answer(self, shown):
-        """Answers each query for the terminal's status, as terminals do."""
-        for _ in range(shown.count(b"\x1b[5n")):
-            os.write(self.master, b"\x1b[0n")
 
     def read(self, seconds):
         """Reads for some time. Returns the number of bytes."""
@@ -262,33 +252,6 @@ def draws(folder):
     screen.end()
 
 
-def slow_line(folder):
-    """Measures the time until help appears among pictures on a line of 2 kB/s behind unlimited buffers, as with SSH."""
-    fifo = os.path.join(folder, "slow")
-    os.mkfifo(fifo)
-    screen = Screen(["watch", fifo, "--format", "lines", "--rows", "16", "--columns", "16", "--at-least", "1000"], folder)
-    screen.answers = False
-    pipe = os.open(fifo, os.O_WRONLY)
-    start = now = time.monotonic()
-    shown, sent, pressed = 0.0, 0, 0
-    while not pressed or b"subtract the median" not in screen.bytes[pressed:int(shown)]:
-        screen.read(0.01)
-        before, now = now, time.monotonic()
-        if now - start > sent / 20:
-            os.write(pipe, line(sent, 16))
-            sent += 1
-        if now - start > 10.0 and not pressed:
-            pressed = len(screen.bytes)
-            os.write(screen.master, b"?")
-        # The bytes that the line has transferred so far.
-        brought, shown = shown, min(shown + 2000 * (now - before), len(screen.bytes))
-        screen.answer(screen.bytes[max(0, int(brought) - 3):int(shown)])
-    took = now - start - 10.0
-    figure("help on a line of 2 kB/s while 16 x 16 come at 20 Hz", f"{took:.1f} s", "2 s", took <= 2.0)
-    os.close(pipe)
-    screen.end()
-
-
 def replay(folder):
     if not RECORDING:
         print("SKIPPED: no recording to replay is named")
@@ -304,5 +267,5 @@ def replay(folder):
 
 with tempfile.TemporaryDirectory() as folder:
     print(subprocess.run([TAXEL, "--version"], capture_output=True, text=True).stdout.strip(), "on", os.cpu_count(), "cores")
-    for part in (latency, draws, slow_line, stopped_terminal, replay, memory, thousand_a_second):
+    for part in (latency, draws, stopped_terminal, replay, memory, thousand_a_second):
         part(folder)

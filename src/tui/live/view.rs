@@ -348,7 +348,8 @@ fn draw_lines(lines: &[(&'static str, String)], theme: &Theme, buffer: &mut Buff
     };
     if shown < lines.len() {
         let last = write::row(area, shown);
-        write::left_out(buffer, last, theme, lines.len() - shown);
+        let left = format!("and {} more on a larger screen", lines.len() - shown);
+        write::text(buffer, last, theme, &left, Role::Quiet);
     }
     for (index, (label, text)) in lines.iter().take(shown).enumerate() {
         let label = format!("{label:LABEL$}");

@@ -63,16 +63,6 @@ pub fn fitted<'a>(text: &'a str, room: usize, theme: &Theme) -> Cow<'a, str> {
     Cow::Owned(format!("{}{ellipsis}", kept.trim_end()))
 }
 
-pub fn first_fitting<'a>(texts: &[&'a str], room: usize) -> &'a str {
-    let fitting = texts.iter().find(|text| width(text) <= room);
-    fitting.or(texts.last()).copied().unwrap_or("")
-}
-
-pub fn left_out(buffer: &mut Buffer, row: Rect, theme: &Theme, count: usize) {
-    let left = format!("and {count} more on a larger screen");
-    text(buffer, row, theme, &left, Role::Quiet);
-}
-
 pub fn row(area: Rect, index: usize) -> Rect {
     let index = narrow(index);
     let inside = index < area.height;
@@ -117,31 +107,26 @@ pub fn left_of(area: Rect, x: u16) -> Rect {
 /// Returns the part of a text that a field of `room` columns shows so that the cursor is visible, and the column of
 /// the cursor in that part. An ellipsis at its start stands for the hidden text before. The part extends to the end
 /// of the text: the caller shortens it at the right, which never hides the character under the cursor.
-pub fn field_text<'a>(
-    text: &'a str,
-    cursor: usize,
-    room: usize,
-    theme: &Theme,
-) -> (Cow<'a, str>, usize) {
+pub fn field_text(text: &str, cursor: usize, room: usize, theme: &Theme) -> (String, usize) {
     let ellipsis = theme.text("…");
-    let (mut shown, mut column) = window(text, cursor, room);
-    let before_mark = room.saturating_sub(width(&ellipsis));
-    if width(shown) > room && column >= before_mark && before_mark > width(&ellipsis) {
-        (shown, column) = window(text, cursor, before_mark);
+    let mark = width(&ellipsis);
+    let is_visible = |hidden: usize, before: usize| {
+        let is_cut = before + width(text) - hidden > room;
+        cursor + before - hidden + if is_cut { mark } else { 0 } < room
+    };
+    if room <= 2 * mark || is_visible(0, 0) {
+        return (text.to_owned(), cursor);
     }
-    if shown.len() == text.len() || width(&ellipsis) > column {
-        return (Cow::Borrowed(shown), column);
-    }
-    let mut kept = shown.chars();
-    let mut covered = 0;
-    while covered < width(&ellipsis)
-        && let Some(character) = kept.next()
+    let (mut rest, mut hidden) = (text.chars(), 0);
+    while (hidden == 0 || !is_visible(hidden, mark))
+        && let Some(character) = rest.next()
     {
-        covered += width(character.encode_utf8(&mut [0; 4]));
+        hidden += width(character.encode_utf8(&mut [0; 4]));
     }
-    let gap = " ".repeat(covered - width(&ellipsis));
-    let marked = format!("{ellipsis}{gap}{}", kept.as_str());
-    (Cow::Owned(marked), column)
+    (
+        format!("{ellipsis}{}", rest.as_str()),
+        cursor + mark - hidden,
+    )
 }
 
 pub fn field_columns(text: &str, cursor: usize, room: usize, theme: &Theme) -> (String, usize) {
@@ -219,20 +204,6 @@ pub(in crate::tui) fn head(text: &str, room: usize) -> &str {
         kept = &text[..end];
     }
     kept
-}
-
-/// Returns the part of a text that a field of `room` columns shows so that the cursor is visible, from its first
-/// character to the end of the text, and the column of the cursor in that part.
-pub fn window(text: &str, cursor: usize, room: usize) -> (&str, usize) {
-    let (mut shown, mut column) = (text, cursor);
-    while column >= room.max(1)
-        && let Some(first) = shown.chars().next()
-    {
-        let (hidden, rest) = shown.split_at(first.len_utf8());
-        column = column.saturating_sub(width(hidden));
-        shown = rest;
-    }
-    (shown, column)
 }
 
 pub fn broken(text: &str, room: usize) -> Vec<&str> {
@@ -331,15 +302,16 @@ mod tests {
     fn the_cursor_in_a_field_is_always_visible() {
         for (text, cursor, expected) in [
             ("1234", 4, ("1234", 4)),
-            ("12345", 5, ("2345", 4)),
+            ("12345", 5, ("…345", 4)),
             ("12345", 0, ("12345", 0)),
-            ("字字字", 6, ("字字", 4)),
+            ("123456789", 5, ("…456789", 3)),
+            ("字字字", 6, ("…字", 3)),
             ("字字字", 2, ("字字字", 2)),
             ("", 0, ("", 0)),
         ] {
-            assert_eq!(window(text, cursor, 5), expected, "{text} at {cursor}");
+            let (shown, column) = field_text(text, cursor, 5, &Theme::plain(false));
+            assert_eq!((shown.as_str(), column), expected, "{text} at {cursor}");
         }
-        assert_eq!(window("ab", 2, 0), ("", 0));
     }
 
     #[test]
