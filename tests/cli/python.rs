@@ -7,12 +7,7 @@ use super::python_has;
 use super::skip::skipped;
 
 /// Runs an example, if Python has these modules, and returns what it prints.
-fn printed(name: &str, modules: &str) -> Option<String> {
-    printed_with(name, modules, &[])
-}
-
-/// Like [`printed`], with arguments.
-fn printed_with(name: &str, modules: &str, arguments: &[&str]) -> Option<String> {
+fn output_of(name: &str, modules: &str, arguments: &[&str]) -> Option<String> {
     if !python_has(modules) {
         return None;
     }
@@ -32,7 +27,7 @@ fn printed_with(name: &str, modules: &str, arguments: &[&str]) -> Option<String>
 
 #[test]
 fn an_atlas_is_read_as_arrays() {
-    let Some(printed) = printed("atlas.py", "numpy") else {
+    let Some(printed) = output_of("atlas.py", "numpy", &[]) else {
         return;
     };
     for line in [
@@ -46,7 +41,7 @@ fn an_atlas_is_read_as_arrays() {
 
 #[test]
 fn no_classifier_passes_the_limit() {
-    let Some(printed) = printed("classifier.py", "numpy, sklearn") else {
+    let Some(printed) = output_of("classifier.py", "numpy, sklearn", &[]) else {
         return;
     };
     let number = |start: &str| -> f64 {
@@ -62,25 +57,23 @@ fn no_classifier_passes_the_limit() {
 
 #[test]
 fn live_frames_are_named() {
-    let Some(printed) = printed("live.py", "json") else {
+    let Some(printed) = output_of("live.py", "json", &[]) else {
         return;
     };
-    let of = |name: &str| {
-        let named = format!(": {name} (certain)");
-        printed
-            .lines()
-            .filter(|line| line.ends_with(&named))
-            .count()
-    };
-    assert_eq!((of("disc"), of("bar")), (12, 12), "{printed}");
+    for name in ["disc", "bar"] {
+        let end = format!(": {name} (certain)\n");
+        assert_eq!(printed.matches(&end).count(), 12, "{printed}");
+    }
     assert!(printed.starts_with("frame 0: no contact\n"), "{printed}");
     // This recording begins and ends without contact.
     let recording = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/recording.csv");
-    let Some(printed) = printed_with("live.py", "json", &[recording]) else {
+    let Some(printed) = output_of("live.py", "json", &[recording]) else {
         return;
     };
-    assert!(printed.contains(": no contact\n"), "{printed}");
-    assert!(printed.contains(" taxels at "), "{printed}");
+    assert!(
+        printed.contains(": no contact\n") && printed.contains(" taxels at "),
+        "{printed}"
+    );
 }
 
 #[test]
@@ -95,17 +88,13 @@ fn real_footsteps_are_named() {
         ));
         return;
     }
-    let Some(printed) = printed_with("footsteps.py", "json", &[recording]) else {
+    let Some(printed) = output_of("footsteps.py", "json", &[recording]) else {
         return;
     };
     // The recording is of a left foot. Each step begins with the heel, then the whole foot follows, then the ball.
-    let steps = printed.lines().filter(|line| line.starts_with("step"));
-    let phases = ": left heel, left whole, left ball";
-    assert_eq!(
-        steps.filter(|line| line.contains(phases)).count(),
-        5,
-        "{printed}"
-    );
+    let steps = printed
+        .matches(": left heel, left whole, left ball")
+        .count();
     let last = printed.lines().last().expect("a line");
     let left: u32 = last
         .split(' ')
@@ -113,5 +102,8 @@ fn real_footsteps_are_named() {
         .expect("a word")
         .parse()
         .expect("a number");
-    assert!(left >= 95 && last.contains(" of 102 frames"), "{printed}");
+    assert!(
+        steps == 5 && left >= 95 && last.contains(" of 102 frames"),
+        "{printed}"
+    );
 }

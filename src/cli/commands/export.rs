@@ -181,6 +181,7 @@ pub(crate) struct KeepFlags {
 }
 
 impl KeepFlags {
+    /// Checks the flags. `json` tells whether the answer is JSON, too.
     pub(crate) fn kept(&self, json: bool) -> Result<Kept, Failure> {
         let (save, existing) = (self.save.clone(), replacing(self.force));
         let export = self.export.clone();

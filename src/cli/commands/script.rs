@@ -23,7 +23,7 @@ use taxel_files::storage::{self, Existing};
 use crate::cli::Context;
 use crate::cli::commands::export;
 use crate::cli::failure::{Failure, Named};
-use crate::cli::input::content::InputSource;
+use crate::cli::input::content::{input_name, open};
 use crate::cli::output::charset::Charset;
 use crate::tui::app::state::Options;
 use crate::tui::keys::key::{Key, parse};
@@ -104,12 +104,14 @@ impl Script {
         if let Some(folder) = &self.svg {
             export::make_folder(folder)?;
         }
-        let mut sources: Vec<_> = self.file.iter().map(|file| InputSource::of(file)).collect();
+        let mut sources = self.file.clone();
         if sources.is_empty() && self.keys.is_none() {
-            sources.push(InputSource::Standard);
+            sources.push("-".into());
         }
         let mut names = Names::default();
-        let mut run = |source| self.play(cx, source, &keys, &mut names);
+        let mut run = |source: Option<&PathBuf>| {
+            self.play(cx, source.map(PathBuf::as_path), &keys, &mut names)
+        };
         match &sources[..] {
             [] => run(None),
             [source] => run(Some(source)),
@@ -133,14 +135,11 @@ impl Script {
     fn play(
         &self,
         cx: &Context,
-        source: Option<&InputSource>,
+        source: Option<&Path>,
         keys: &[Key],
         names: &mut Names,
     ) -> Result<(), Failure> {
-        let folder = match source {
-            Some(InputSource::File(path)) => storage::folder_of(path),
-            _ => Path::new("."),
-        };
+        let folder = source.map_or(Path::new("."), storage::folder_of);
         let ascii = Charset::current() == Charset::Ascii;
         let plain = Theme::plain(ascii);
         let theme = match self.svg {
@@ -171,7 +170,7 @@ impl Script {
             Some(library) => World::for_script(library),
             None => World::scratch()?,
         };
-        let name = source.map(InputSource::name).unwrap_or_default();
+        let name = source.map(input_name).unwrap_or_default();
         let script = match source {
             Some(source) => bytes(source)
                 .map_err(|error| Failure::usage(taxel_files::ReadError::from(error).to_string()))
@@ -253,9 +252,9 @@ fn text(script: &[u8]) -> Result<&str, ScriptFailure> {
     })
 }
 
-fn bytes(source: &InputSource) -> io::Result<Vec<u8>> {
+fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let mut input = source.open()?.take(MOST_BYTES + 1);
+    let mut input = open(path)?.take(MOST_BYTES + 1);
     input.read_to_end(&mut bytes)?;
     if bytes.len() as u64 > MOST_BYTES {
         let text = "larger than 16 MiB, the limit for a script";

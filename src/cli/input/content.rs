@@ -3,7 +3,7 @@
 
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use taxel_files::ReadError;
@@ -13,34 +13,22 @@ use taxel_files::formats::{Content, read_content};
 
 use crate::cli::failure::{Failure, Named};
 
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum InputSource {
-    File(PathBuf),
-    Standard,
+/// What messages call a file, or standard input for `-`.
+pub(crate) fn input_name(path: &Path) -> String {
+    if path.as_os_str() == "-" {
+        "standard input".to_owned()
+    } else {
+        path.to_string_lossy().into_owned()
+    }
 }
 
-impl InputSource {
-    pub(crate) fn of(path: &Path) -> Self {
-        if path.as_os_str() == "-" {
-            Self::Standard
-        } else {
-            Self::File(path.to_owned())
-        }
-    }
-
-    pub(crate) fn name(&self) -> String {
-        match self {
-            Self::File(path) => path.to_string_lossy().into_owned(),
-            Self::Standard => "standard input".to_owned(),
-        }
-    }
-
-    pub(crate) fn open(&self) -> io::Result<Box<dyn Read>> {
-        Ok(match self {
-            Self::File(path) => Box::new(File::open(path)?),
-            Self::Standard => Box::new(standard()?),
-        })
-    }
+/// Opens a file, or standard input for `-`.
+pub(crate) fn open(path: &Path) -> io::Result<Box<dyn Read>> {
+    Ok(if path.as_os_str() == "-" {
+        Box::new(standard()?)
+    } else {
+        Box::new(File::open(path)?)
+    })
 }
 
 /// Returns standard input, but only once: a second reader would find only its end, and take it for an empty input.
@@ -59,11 +47,9 @@ pub(crate) struct Input {
 }
 
 impl Input {
-    /// Opens a file; `-` is standard input.
     pub(crate) fn open(path: &Path) -> Result<Self, Failure> {
-        let source = InputSource::of(path);
-        let name = source.name();
-        let read = source.open().map_err(ReadError::from).named(&name)?;
+        let name = input_name(path);
+        let read = open(path).map_err(ReadError::from).named(&name)?;
         Ok(Self { name, read })
     }
 

@@ -24,7 +24,7 @@ use taxel_files::storage::FileId;
 use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::cli::failure::{Failure, Named};
-use crate::cli::input::content::{self, Input, InputSource};
+use crate::cli::input::content::{self, Input, input_name};
 
 /// The most bytes that are read of a table. A table of 64 × 64 factors is much smaller.
 const LARGEST_TABLE: u64 = 1 << 20;
@@ -45,7 +45,7 @@ pub(crate) struct RecordingFile {
 
 impl RecordingFile {
     pub(crate) fn open(path: &Path, options: ReadOptions) -> Result<Self, Failure> {
-        Self::named(InputSource::of(path).name(), path, options)
+        Self::named(input_name(path), path, options)
     }
 
     fn named(name: String, path: &Path, options: ReadOptions) -> Result<Self, Failure> {
@@ -297,7 +297,7 @@ pub(crate) fn dead_cells(path: &Path) -> Result<Imprint, Failure> {
 /// Reads a table of factors, in any format of recordings with one frame. Reading stops at a second frame, which is an
 /// error. The table must have the size of the cropped frames, which is checked when the first of them is processed.
 pub(crate) fn gain(path: &Path) -> Result<Matrix<f64>, Failure> {
-    let name = format!("--gain {}", InputSource::of(path).name());
+    let name = format!("--gain {}", input_name(path));
     let mut file = RecordingFile::named(name, path, ReadOptions::default())?;
     let mut gain = Matrix::filled(MatrixSize::SMALLEST, 1.0);
     let mut frames = Vec::new();
