@@ -22,10 +22,11 @@ use std::time::{Duration, Instant};
 
 use taxel_core::lock::try_locked;
 use taxel_core::progress::{Progress, stop_if};
-use taxel_files::formats::StoredShape;
 use taxel_files::formats::file::system_reason;
+use taxel_files::formats::{Name, StoredShape};
 use taxel_files::storage::{
-    Expected, FileError, Journal, Library, LibraryError, ModelCache, ModelFolder, Models, Orphan,
+    Expected, Journal, Library, LibraryError, ModelCache, ModelChoice, ModelFolder, Models, Orphan,
+    RememberedFile,
 };
 use tempfile::TempDir;
 
@@ -35,7 +36,6 @@ use crate::tui::app::unsaved::UnsavedWork;
 use crate::tui::explore::work::SweepProgress;
 use crate::tui::live::source::Sources;
 use crate::tui::runtime::disk::files::WriteAccess;
-use crate::tui::runtime::reminders::Reminders;
 
 /// What a job leaves to do, on the thread of the screen.
 pub type Answer = Box<dyn FnOnce(&mut App) + Send>;
@@ -131,8 +131,8 @@ pub struct Jobs {
     pub(crate) orphans: Vec<Orphan>,
     /// Offered work that was taken: it is removed from its place once it is in the journal of this program.
     pub(crate) adopted: Vec<Orphan>,
-    /// What is remembered from run to run; None if nothing is.
-    pub(crate) reminders: Option<Reminders>,
+    /// Whether commands and the recognised set are remembered from run to run.
+    remembers: bool,
     pub(crate) models: Models,
     pub(crate) sources: Sources,
     /// The disk's thread, once something was asked of it.
@@ -162,7 +162,7 @@ impl Jobs {
     pub fn new(library: Library) -> Self {
         let mut jobs = Self::for_script(library.clone());
         jobs.orphans = Orphan::all(&library);
-        jobs.reminders = Some(Reminders::of(&library));
+        jobs.remembers = true;
         jobs.keeps_unsaved = true;
         jobs
     }
@@ -178,7 +178,7 @@ impl Jobs {
             access: Arc::default(),
             orphans: Vec::new(),
             adopted: Vec::new(),
-            reminders: None,
+            remembers: false,
             models: Models {
                 folder: Some(ModelFolder::of(library.folder())),
                 cache: None,
@@ -268,7 +268,7 @@ impl Jobs {
     /// Remembers nothing from earlier runs or for later ones, so that a run recorded as a script does the same again.
     #[must_use]
     pub fn without_reminders(mut self) -> Self {
-        self.reminders = None;
+        self.remembers = false;
         self
     }
 
@@ -346,32 +346,22 @@ impl Jobs {
             count: OnceLock::new(),
             post: self.post.clone(),
         };
-        self.slots.insert(
-            slot,
-            Running {
-                number,
-                stop,
-                thread: None,
-            },
-        );
         let post = self.post.clone();
+        let mut running = Running {
+            number,
+            stop,
+            thread: None,
+        };
         let body = move || {
             let last = caught(|| job(&progress)).unwrap_or_else(refusal);
             post.send(Posted::Job(slot, number, true, last));
         };
-        if !has_threads {
-            return body();
+        if has_threads {
+            running.thread = Some(std::thread::spawn(body));
+        } else {
+            body();
         }
-        match start(body) {
-            Ok(thread) => {
-                let running = self.slots.get_mut(&slot);
-                running.map(|running| running.thread.insert(thread));
-            }
-            Err(reason) => {
-                let last = Posted::Job(slot, number, true, refusal(reason));
-                self.post.send(last);
-            }
-        }
+        self.slots.insert(slot, running);
     }
 
     /// Asks the job in the slot to stop; its last answer still comes.
@@ -487,6 +477,31 @@ impl Jobs {
         (first.since.elapsed() >= SLOW).then(|| format!("{}: waiting for {who}{end}", first.what))
     }
 
+    /// Gives the program what earlier runs remembered.
+    pub(crate) fn remind(app: &mut App) {
+        if !app.jobs.remembers {
+            return;
+        }
+        app.commands = RememberedFile::commands(&app.jobs.library).read();
+        let mut set = RememberedFile::recognised_set(&app.jobs.library).read();
+        if let Some(Ok(name)) = set.pop().map(|name| Name::new(&name)) {
+            app.recognition.begin_with(ModelChoice::from_name(name));
+        }
+    }
+
+    /// Remembers a line for the next run, unless it is the last one already.
+    pub(crate) fn remember(&mut self, file: fn(&Library) -> RememberedFile, line: String) {
+        if self.remembers {
+            self.disk("Remembering it", move |library| {
+                let file = file(library);
+                if file.read().last() != Some(&line) {
+                    file.add(vec![line]);
+                }
+                answer(|_| {})
+            });
+        }
+    }
+
     /// Keeps this work in the journal, in place of what was kept before.
     pub(crate) fn keep(&mut self, works: Vec<UnsavedWork>) {
         if self.keeps_unsaved && (works != self.kept || !self.adopted.is_empty()) {
@@ -521,7 +536,11 @@ impl Jobs {
         let (done, written) = channel();
         jobs.send(DiskWork::Flush(done));
         let time = end.saturating_duration_since(Instant::now());
-        let is_kept = written.recv_timeout(time).unwrap_or(false);
+        let is_kept = written.recv_timeout(time);
+        if is_kept.is_err() {
+            // It hangs, and ends with the program.
+            jobs.disk = None;
+        }
         let why = if jobs.library.waits_for_lock() {
             "another program holds the library"
         } else {
@@ -532,7 +551,7 @@ impl Jobs {
         lines.extend(left);
         // A threshold that is changed often writes the metadata as often.
         lines.dedup();
-        if !is_kept && !jobs.kept.is_empty() {
+        if is_kept != Ok(true) && !jobs.kept.is_empty() {
             let line =
                 "unsaved work may not be on the disk: the disk refuses it or does not answer\n";
             lines.push(line.to_owned());
@@ -673,10 +692,11 @@ impl Disk {
                 self.post.send(Posted::Disk(answer));
             }
             DiskWork::Keep(works, adopted) => {
-                let at_once = self
-                    .journal
-                    .as_mut()
-                    .is_some_and(|journal| journal.note(works, adopted));
+                // Nothing can be lost any more, or work must not be offered twice.
+                let at_once = works.is_empty() || !adopted.is_empty();
+                if let Some(journal) = &mut self.journal {
+                    journal.note(works, adopted);
+                }
                 if at_once {
                     self.write_journal();
                 }
@@ -691,16 +711,8 @@ impl Disk {
 
     /// Returns true if the unsaved work is on the disk.
     fn write_journal(&mut self) -> bool {
-        let written = self.journal.as_mut().map_or(Ok(()), UnsavedJournal::write);
-        let is_new = self
-            .journal
-            .as_mut()
-            .is_some_and(|journal| journal.is_news(&written));
-        if let (true, Err(error)) = (is_new, &written) {
-            let reason = format!("unsaved work cannot be kept: {error}");
-            self.post.answer(|app| refuse(app, reason));
-        }
-        written.is_ok()
+        let journal = self.journal.as_mut();
+        journal.is_none_or(|journal| journal.write(&self.post))
     }
 }
 
@@ -728,36 +740,33 @@ impl UnsavedJournal {
         }
     }
 
-    /// Returns true if it is to be written at once: nothing can be lost any more, or work must not be offered twice.
-    fn note(&mut self, works: Vec<UnsavedWork>, adopted: Vec<Orphan>) -> bool {
+    fn note(&mut self, works: Vec<UnsavedWork>, adopted: Vec<Orphan>) {
         let soon = Instant::now() + GATHER;
         self.due = Some(self.due.map_or(soon, |due| due.min(soon)));
         self.works = works;
-        let at_once = self.works.is_empty() || !adopted.is_empty();
         self.adopted.extend(adopted);
-        at_once
     }
 
-    /// Brings the journal up to date, also if someone has removed it.
-    fn write(&mut self) -> Result<(), FileError> {
+    /// Brings the journal up to date, also if someone has removed it. Returns true if it is; an error is reported once.
+    fn write(&mut self, post: &Post) -> bool {
         if self.written != self.works || !self.journal.is_intact() {
-            self.due = Some(Instant::now() + RETRY);
             let shapes = self.works.iter().map(UnsavedWork::to_shape);
-            self.journal.keep(shapes.collect())?;
+            if let Err(error) = self.journal.keep(shapes.collect()) {
+                self.due = Some(Instant::now() + RETRY);
+                if !std::mem::replace(&mut self.has_failed, true) {
+                    let reason = format!("unsaved work cannot be kept: {error}");
+                    post.answer(|app| refuse(app, reason));
+                }
+                return false;
+            }
             self.written.clone_from(&self.works);
         }
-        self.due = None;
-        // What cannot be removed is offered again: better twice than never.
+        (self.due, self.has_failed) = (None, false);
         for orphan in self.adopted.drain(..) {
+            // What cannot be removed is offered again: better twice than never.
             orphan.discard();
         }
-        Ok(())
-    }
-
-    /// An error is reported once.
-    fn is_news(&mut self, written: &Result<(), FileError>) -> bool {
-        let before = std::mem::replace(&mut self.has_failed, written.is_err());
-        written.is_err() && !before
+        true
     }
 }
 

@@ -14,7 +14,6 @@ use crate::tui::jobs::Answer;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::Context;
-use crate::tui::runtime::reminders;
 use crate::tui::{explore, live, matrix, recognise};
 
 /// The length, in bytes, from which nothing is added to a failure that nobody has read.
@@ -37,7 +36,6 @@ pub fn update(app: &mut App, message: Message) -> Option<TerminalEffect> {
     recognise::page::stop_if_failed(app);
     let works = app.unsaved_work();
     app.jobs.keep(works);
-    reminders::remember(app);
     app.terminal.take()
 }
 

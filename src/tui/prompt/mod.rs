@@ -9,7 +9,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use taxel_files::formats::Name;
 use taxel_files::formats::name::LONGEST;
-use taxel_files::storage::{Library, ModelChoice, ModelFolder, ShapeOrigin};
+use taxel_files::storage::{Library, ModelChoice, ModelFolder, RememberedFile, ShapeOrigin};
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::Message;
@@ -181,6 +181,7 @@ impl CommandDialog {
         };
         let has_arguments = line.contains(' ');
         if app.commands.last() != Some(&line) {
+            app.jobs.remember(RememberedFile::commands, line.clone());
             app.commands.push(line);
             self.given.clone_from(&app.commands);
         }

@@ -10,7 +10,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::recognition::{Answer, Evidence};
 use taxel_core::sensor::MatrixSize;
 use taxel_files::formats::Name;
-use taxel_files::storage::ModelChoice;
+use taxel_files::storage::{ModelChoice, RememberedFile};
 
 use crate::tui::app::change::{begin_drawn, inform, let_go, refuse};
 use crate::tui::app::message::Message;
@@ -360,6 +360,11 @@ fn take_model(app: &mut App, stored: Vec<Name>, trained: Result<Arc<TrainedModel
         Ok(trained) => {
             // What was given as the name of a stored model may be that of a file.
             page.choice = trained.choice.clone();
+            // A model from a file is not remembered, since the next run may begin in another folder.
+            if !matches!(page.choice, ModelChoice::File(_)) {
+                let name = page.choice.name().to_owned();
+                app.jobs.remember(RememberedFile::recognised_set, name);
+            }
             (page.trained, page.unreadable) = (Some(trained), None);
             page.ask();
             let has_keys = app.top_mut::<RecognisePage>().is_some();

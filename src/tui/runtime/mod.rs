@@ -2,7 +2,6 @@
 
 pub(crate) mod disk;
 
-pub(crate) mod reminders;
 
 pub use crate::tui::jobs::Jobs as World;
 pub use crate::tui::live::source::check as check_source;

@@ -27,11 +27,11 @@ use crate::tui::app::state::{App, Notice, Options};
 use crate::tui::app::unsaved::offer;
 use crate::tui::app::update::update;
 use crate::tui::app::view::draw;
+use crate::tui::jobs::Jobs;
 use crate::tui::keys::key::{Key, KeyError, parse};
 use crate::tui::live::message::{LiveMessage, NamedSource, SourceState};
 use crate::tui::live::update::{arrived, last_page};
 use crate::tui::runtime::World;
-use crate::tui::runtime::reminders::remind;
 use crate::tui::widget::theme::{Palette, Theme, letter};
 use crate::tui::widget::write;
 use crate::tui::widget::write::narrow;
@@ -77,7 +77,7 @@ impl Session {
             app,
             screen: RefCell::new(screen),
         };
-        remind(&mut session.app);
+        Jobs::remind(&mut session.app);
         session.send(Message::Resized(width, height));
         offer(&mut session.app);
         session

@@ -19,10 +19,10 @@ use crate::tui::app::state::{App, TerminalEffect};
 use crate::tui::app::unsaved::offer;
 use crate::tui::app::update::update;
 use crate::tui::app::view::draw;
+use crate::tui::jobs::Jobs;
 use crate::tui::keys::action;
 use crate::tui::live::source;
 use crate::tui::live::update::last_page;
-use crate::tui::runtime::reminders::remind;
 use crate::tui::runtime::{World, end, flush};
 use crate::tui::terminal::input::{self, Input};
 use crate::tui::terminal::screen::Screen;
@@ -63,7 +63,7 @@ pub fn run(
         let _ = wake.send(Event::Answered);
     }));
     // Before signals are handled: if the disk hangs here, they still end the program.
-    remind(&mut app);
+    Jobs::remind(&mut app);
     let terminal = session::terminal()?;
     unix::watch(terminal.try_clone()?, sender.clone())?;
     session::enter(&terminal, settings, &sender)?;
