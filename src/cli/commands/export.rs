@@ -255,10 +255,6 @@ pub(crate) fn written(path: &Path) -> String {
     format!("written: {}", path.display())
 }
 
-pub(crate) fn put(path: &Path, content: &[u8], existing: Existing) -> Result<(), Failure> {
-    Ok(storage::write(path, content, existing)?)
-}
-
 pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
     Ok(fs::create_dir_all(folder).map_err(|error| {
         let error = if folder.exists() {

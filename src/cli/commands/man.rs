@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Command;
 use clap_mangen::Man as Page;
 use taxel_files::formats::value::counted;
-use taxel_files::storage::Existing;
+use taxel_files::storage::{self, Existing};
 
 use crate::cli::Context;
 use crate::cli::commands::export;
@@ -68,11 +68,8 @@ impl Man {
         for command in &commands {
             let name = command.get_display_name().unwrap_or(command.get_name());
             let file = folder.join(format!("{name}.1"));
-            export::put(
-                &file,
-                &page(command).named(file.display())?,
-                Existing::Replaced,
-            )?;
+            let page = page(command).named(file.display())?;
+            storage::write(&file, &page, Existing::Replaced)?;
         }
         let pages = counted(commands.len() as u64, "page");
         cx.print(&format!("written: {pages} in {}\n", folder.display()))

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use taxel_files::formats::Name;
 use taxel_files::formats::file::without_mark;
 use taxel_files::formats::name::folded;
-use taxel_files::storage::{self, Existing};
+use taxel_files::storage;
 
 use crate::cli::Context;
 use crate::cli::commands::export;
@@ -201,11 +201,8 @@ impl Script {
         if let (Some((name, session)), Some(folder)) = (shown.screen, &self.svg) {
             let name = names.next(name);
             let path = folder.join(format!("{name}.svg"));
-            let existing = match self.force {
-                true => Existing::Replaced,
-                false => Existing::Kept,
-            };
-            export::put(&path, session.svg(&name).as_bytes(), existing)?;
+            let existing = export::replacing(self.force);
+            storage::write(&path, session.svg(&name).as_bytes(), existing)?;
         }
         let mut output = io::stdout().lock();
         output.write_all(shown.text.as_bytes())?;

@@ -18,12 +18,12 @@ use taxel_core::recognition::{CellPositions, Model, TrainingError};
 use taxel_files::formats::file::has_ending;
 use taxel_files::memory::MemoryGuard;
 use taxel_files::storage::{
-    self, Existing, FoundModel, ModelCache, ModelChoice, ModelFolder, Models, check_writable,
+    self, FoundModel, ModelCache, ModelChoice, ModelFolder, Models, check_writable,
 };
 
 use crate::cli::Context;
 use crate::cli::arguments::flags::{name_or_path, report};
-use crate::cli::commands::export::written;
+use crate::cli::commands::export::{replacing, written};
 use crate::cli::failure::{Failure, Named};
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
@@ -122,7 +122,7 @@ impl TableFlags {
     /// Refuses a file that cannot be written: before the work, not after it.
     fn check(&self) -> Result<(), Failure> {
         if let Some(path) = &self.export {
-            check_writable(path, existing(self.force))?;
+            check_writable(path, replacing(self.force))?;
         }
         Ok(())
     }
@@ -137,7 +137,7 @@ impl TableFlags {
         if let Some(path) = &self.export {
             let drawing = self.drawing().and_then(|_| table.svg());
             let content = drawing.unwrap_or_else(|| table.csv());
-            storage::write(path, content.as_bytes(), existing(self.force))?;
+            storage::write(path, content.as_bytes(), replacing(self.force))?;
             if !self.quiet {
                 cx.note(&written(path));
             }
@@ -147,13 +147,6 @@ impl TableFlags {
             (_, true) => table.csv(),
             _ => table.text(cx.charset),
         })
-    }
-}
-
-fn existing(force: bool) -> Existing {
-    match force {
-        true => Existing::Replaced,
-        false => Existing::Kept,
     }
 }
 

@@ -16,8 +16,9 @@ use taxel_files::storage::{ModelChoice, check_writable, save_model};
 use crate::cli::Context;
 use crate::cli::arguments::flags::{TOO_LITTLE_MEMORY, one_of, parse_shard, whole};
 use crate::cli::arguments::parameters::{FittingSensorFlags, RangeFlags};
+use crate::cli::commands::export::replacing;
 use crate::cli::commands::model::keeping::card;
-use crate::cli::commands::model::{SetFlags, existing, folder, model_file, positions, trained};
+use crate::cli::commands::model::{SetFlags, folder, model_file, positions, trained};
 use crate::cli::failure::Failure;
 use crate::cli::input::shapes;
 use crate::cli::output::charset::note;
@@ -98,7 +99,7 @@ impl Train {
         let training = Training::new(shapes, sensor, anchor, ranges)?
             .with_shard(self.shard.unwrap_or(Shard::WHOLE))
             .allow_cut(self.allow_cut);
-        let existing = existing(self.force);
+        let existing = replacing(self.force);
         match (&self.name, &self.out) {
             (Some(name), _) => folder(&cx.shelf)?.check(name, existing)?,
             (None, Some(path)) => check_writable(path, existing)?,
