@@ -277,9 +277,7 @@ impl Scan {
                 }
                 RecordingEvent::Note(note) if note.is_plain() => scan.plain.push(note.to_string()),
                 RecordingEvent::Note(note) => scan.notes.push(note.clone()),
-                RecordingEvent::Damage { .. }
-                | RecordingEvent::Provisional(_)
-                | RecordingEvent::Withdrawn => {}
+                RecordingEvent::Damage { .. } => {}
             }
             ControlFlow::Continue(())
         });

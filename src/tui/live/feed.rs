@@ -343,7 +343,6 @@ impl Feed {
                 };
                 pending.no_frame_reason = counts.no_frame().map(|reason| reason + hint);
             }),
-            AcquireEvent::Provisional(_) | AcquireEvent::Withdrawn => false,
         }
     }
 }

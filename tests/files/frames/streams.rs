@@ -13,7 +13,7 @@ use super::samples::sample;
 use super::{frame_size, recorded};
 use crate::common::Random;
 
-/// Returns the values of all frames, read in pieces of a random size; without provisional frames.
+/// Returns the values of all frames, read in pieces of a random size.
 fn decoded(
     options: &ReadOptions,
     bytes: &[u8],
@@ -58,8 +58,6 @@ fn said(reader: &mut StreamReader, bytes: &[u8]) -> String {
     let read = reader.read(&mut pieces, &mut |event| {
         match event {
             RecordingEvent::Frame(frame) => said += &format!("f{} ", frame.values()[0]),
-            RecordingEvent::Provisional(frame) => said += &format!("p{} ", frame.values()[0]),
-            RecordingEvent::Withdrawn => said += "w ",
             RecordingEvent::Damage { .. } => said += "d ",
             _ => {}
         }
@@ -237,14 +235,14 @@ fn cells_that_look_like_a_marker_do_not_confuse_a_stream_read_from_its_start() {
     }
 }
 
-/// A frame is shown at its last byte, and withdrawn if no marker follows.
+/// A frame is complete when the marker after it has come.
 #[test]
-fn a_provisional_frame_is_confirmed_or_withdrawn() {
+fn a_frame_without_a_marker_after_it_is_none() {
     let mut reader = StreamReader::new(&of_format("flexitac", (1, 3)));
     let bytes = [
         0xaa, 0x55, 1, 2, 3, 0xaa, 0x55, 4, 5, 6, 0xaa, 0x55, 7, 8, 9, 9, 0xaa, 0x55,
     ];
-    assert_eq!(said(&mut reader, &bytes), "p1 f1 p4 f4 p7 w d ");
+    assert_eq!(said(&mut reader, &bytes), "f1 f4 d ");
 }
 
 #[test]

@@ -119,10 +119,6 @@ pub enum AcquireEvent<'a> {
         /// clock restarted; if a recording is repeated, times begin again.
         time: Option<f64>,
     },
-    /// A provisional frame: it is shown but not kept until later data confirms it.
-    Provisional(&'a Frame),
-    /// The provisional frame was invalid.
-    Withdrawn,
     /// An oddity of a recording or a stream.
     Note(&'a RecordingNote),
     /// The counts so far. Reported about ten times a second, with or without frames.

@@ -243,8 +243,6 @@ impl<'a, 'b> Session<'a, 'b> {
         match event {
             RecordingEvent::Channel(info) => self.take_channel(info),
             RecordingEvent::Frame(frame) => self.take_frame(frame),
-            RecordingEvent::Provisional(frame) => self.report(AcquireEvent::Provisional(frame)),
-            RecordingEvent::Withdrawn => self.report(AcquireEvent::Withdrawn),
             RecordingEvent::Note(note) => self.report(AcquireEvent::Note(note)),
             RecordingEvent::Damage { error, .. } => self.leave_out(error),
         }

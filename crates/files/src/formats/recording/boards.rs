@@ -14,9 +14,7 @@ use taxel_core::parameter::number::counted;
 
 use crate::error::{ReadError, ReadErrorKind};
 use crate::formats::recording::error::unshaped;
-use crate::formats::recording::event::{
-    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink, Stop,
-};
+use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingNote, Sink, Stop};
 use crate::formats::recording::format::LOOKED_AT;
 
 /// The bytes before each frame of a `FlexiTac`.
@@ -187,10 +185,7 @@ enum Start {
     Anywhere,
     /// The first byte of the stream. A marker there cannot be the content of cells.
     Stream,
-    Marker {
-        /// Whether the frame after it was shown before it was confirmed.
-        shown: bool,
-    },
+    Marker,
 }
 
 const GARBLED: &str = "no marker AA 55 where it was due";
@@ -206,8 +201,7 @@ impl MarkedFrames<'_, '_> {
 
     fn finish(mut self) -> Result<(), Stop> {
         if !self.bytes.is_empty() {
-            self.withdraw()?;
-            if matches!(self.start, Start::Marker { .. }) || self.has_frames {
+            if self.start == Start::Marker || self.has_frames {
                 self.board.lose(1, &self.bytes, "ends inside a frame")?;
             }
         }
@@ -219,12 +213,12 @@ impl MarkedFrames<'_, '_> {
         let period = self.period();
         if self.start == Start::Stream && self.bytes.len() >= MARKER.len() {
             self.start = if self.has_marker(0) {
-                Start::Marker { shown: false }
+                Start::Marker
             } else {
                 Start::Anywhere
             };
         }
-        if let Start::Marker { shown } = self.start {
+        if self.start == Start::Marker {
             let whole = self.bytes.len() == period;
             if self.has_marker(period) || whole && ended {
                 self.board.give(&self.bytes[MARKER.len()..period])?;
@@ -233,39 +227,23 @@ impl MarkedFrames<'_, '_> {
                 self.start = if ended && self.bytes.is_empty() {
                     Start::Anywhere
                 } else {
-                    Start::Marker { shown: false }
+                    Start::Marker
                 };
                 return Ok(true);
             }
             let waits = whole || self.bytes.len() == period + 1 && self.bytes[period] == MARKER[0];
             if !ended && (waits || self.bytes.len() < period) {
-                if whole && !shown && self.board.options.leaves_out {
-                    self.start = Start::Marker { shown: true };
-                    let board = &mut self.board;
-                    board.fill(&self.bytes[MARKER.len()..]);
-                    board.sink.provisional(board.channel, &mut board.frame)?;
-                }
                 return Ok(false);
             }
-            self.withdraw()?;
         }
         self.search(ended)
-    }
-
-    fn withdraw(&mut self) -> Result<(), Stop> {
-        if let Start::Marker { shown } = &mut self.start
-            && mem::take(shown)
-        {
-            self.board.sink.event(RecordingEvent::Withdrawn)?;
-        }
-        Ok(())
     }
 
     /// Searches for the marker nearest to where it was due that the next one confirms; returns false if more bytes are
     /// needed.
     fn search(&mut self, ended: bool) -> Result<bool, Stop> {
         let period = self.period();
-        let in_step = matches!(self.start, Start::Marker { .. });
+        let in_step = self.start == Start::Marker;
         let due = if in_step { period } else { 0 };
         let reach = due + period;
         // The last position is confirmed within these bytes; no marker is nearer than one where it was due.
@@ -305,7 +283,7 @@ impl MarkedFrames<'_, '_> {
         }
         self.bytes.drain(..gone);
         self.start = match nearest {
-            Some(_) => Start::Marker { shown: false },
+            Some(_) => Start::Marker,
             None => Start::Anywhere,
         };
         Ok(true)

@@ -237,10 +237,6 @@ pub enum RecordingEvent<'a> {
     Channel(&'a ChannelInfo),
     /// A frame; in a stream of bytes, confirmed by the bytes after it.
     Frame(&'a Frame),
-    /// A frame of a stream whose last byte has arrived, but not the bytes that confirm it: to be shown, not to be kept.
-    Provisional(&'a Frame),
-    /// The provisional frame has turned out to be none.
-    Withdrawn,
     /// An oddity.
     Note(&'a RecordingNote),
     /// A wrong frame, if [`ReadOptions::leaves_out`] is set: `Break` ends the reading with this error.
@@ -347,24 +343,10 @@ impl<'a> Sink<'a> {
         channel: usize,
         frame: &mut Frame,
     ) -> Result<(), Stop> {
-        self.place(channel, frame);
-        self.state.channels[channel].1 += 1;
-        self.event(RecordingEvent::Frame(frame))
-    }
-
-    /// Reports a frame that is not confirmed yet.
-    pub(in crate::formats) fn provisional(
-        &mut self,
-        channel: usize,
-        frame: &mut Frame,
-    ) -> Result<(), Stop> {
-        self.place(channel, frame);
-        self.event(RecordingEvent::Provisional(frame))
-    }
-
-    fn place(&self, channel: usize, frame: &mut Frame) {
         frame.channel = channel;
         frame.number = self.state.channels[channel].1;
+        self.state.channels[channel].1 += 1;
+        self.event(RecordingEvent::Frame(frame))
     }
 
     /// Notes the first time of a channel that cannot be read: the text in its place.
