@@ -83,13 +83,13 @@ pub(crate) struct Frames {
     #[arg(long, requires = "choice", conflicts_with = "noise_report")]
     heat: bool,
     #[command(flatten)]
+    keep: KeepFlags,
+    #[command(flatten)]
     frames: FrameFlags,
     #[command(flatten)]
     naming: NamingFlags,
     #[command(flatten)]
     pitch: PitchFlag,
-    #[command(flatten)]
-    keep: KeepFlags,
 }
 
 const EXAMPLES: &str = "\
