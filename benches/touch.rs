@@ -7,7 +7,7 @@
 use std::hint::black_box;
 
 use taxel::tui::app::state::Options;
-use taxel::tui::runtime::World;
+use taxel::tui::jobs::Jobs;
 use taxel::tui::script::Session;
 use taxel_core::description::{DESCRIPTORS, Description, Region, RegionKind, each_region, regions};
 use taxel_core::figure::{Figure, FigureKind};
@@ -186,7 +186,7 @@ fn stages(name: &str, figure: &Figure) {
 /// Measures the time from a key press to a finished frame of 80 × 24 in a test buffer. Two keys and two frames restore
 /// the first state.
 fn frame(name: &str, keys: [&str; 2]) {
-    let world = World::scratch().expect("a folder for the time being");
+    let world = Jobs::scratch().expect("a folder for the time being");
     let mut session = Session::new(&Options::plain(false), world, 80, 24);
     session.keys("f<Enter>").expect("keys that exist");
     let both = Work::new(|| {

@@ -34,8 +34,8 @@ use crate::tui::app::change::refuse;
 use crate::tui::app::state::{App, Notice};
 use crate::tui::app::unsaved::UnsavedWork;
 use crate::tui::explore::work::SweepProgress;
+use crate::tui::files::WriteAccess;
 use crate::tui::live::source::Sources;
-use crate::tui::runtime::disk::files::WriteAccess;
 
 /// What a job leaves to do, on the thread of the screen.
 pub type Answer = Box<dyn FnOnce(&mut App) + Send>;

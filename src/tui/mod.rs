@@ -51,9 +51,9 @@ pub mod live;
 
 mod models;
 
-pub mod runtime;
-
 pub mod jobs;
+
+pub(crate) mod files;
 
 pub mod terminal;
 

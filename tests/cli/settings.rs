@@ -6,7 +6,7 @@ use std::process::Command;
 
 use taxel::cli::settings::Settings;
 use taxel::tui::app::state::{App, Options};
-use taxel::tui::runtime::World;
+use taxel::tui::jobs::Jobs;
 use taxel::tui::script::Session;
 
 use super::{Run, program};
@@ -60,7 +60,7 @@ fn wrong_settings_are_refused_with_their_places() {
 fn session(settings: &str, keys: &str) -> Session {
     let settings = Settings::read(settings).expect("a file of settings");
     let app = App::new(&Options::plain(false)).with_keymap(settings.keymap().clone());
-    let world = World::scratch().expect("a folder");
+    let world = Jobs::scratch().expect("a folder");
     let mut session = Session::of(app, world, 80, 24);
     session.keys(keys).expect("the keys of a test are right");
     session

@@ -1,6 +1,6 @@
 //! The user's files: opening, writing, completion; and the commands that are remembered.
 
-use taxel::tui::runtime::World;
+use taxel::tui::jobs::Jobs;
 use taxel_files::storage::Library;
 
 use crate::session::{hides, press, session, shows, started, then};
@@ -125,7 +125,7 @@ fn paths_are_completed() {
 #[test]
 fn the_prompt_offers_commands_and_remembers_lines_between_runs() {
     let folder = folder();
-    let world = || World::new(Library::open(folder.path().to_owned()));
+    let world = || Jobs::new(Library::open(folder.path().to_owned()));
     let mut first = started(world(), ":");
     shows(&first, &["  copy", "copy descriptors, imprint"]);
     then(&mut first, "fig", &["figure  KIND --side 3"]);

@@ -291,7 +291,7 @@ fn quitting_asks_if_work_would_be_lost() {
         // Saving one does not discard the other.
         (
             "<Space>n<Right><Space>q",
-            "The imprint and 1 earlier shape are not saved",
+            "The imprint and an earlier drawing are not saved",
         ),
         ("<Space>n<Right><Space>qsa name<Enter>", earlier),
         // A figure that is too thin to leave an imprint may be missed, but cannot be saved.

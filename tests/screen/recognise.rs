@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 use taxel::tui::app::message::Message;
-use taxel::tui::runtime::World;
+use taxel::tui::jobs::Jobs;
 use taxel::tui::script::Session;
 use taxel_core::figure::Figure;
 use taxel_core::pose::{Anchor, Axis, Ranges};
@@ -53,7 +53,7 @@ fn a_stored_model_that_was_trained_anew_is_read_again() {
     let library = with_model(folder.path());
     let square = ":figure rectangle --length 4 --width 4 --x0 5 --y0 5<Enter>";
     let keys = format!("{square}:recognise my parts<Enter>");
-    let mut session = started(World::new(library.clone()), &keys);
+    let mut session = started(Jobs::new(library.clone()), &keys);
     shows(&session, &["tied: one, other"]);
     save_model(&library, &[("bar", 6.0, 2.0), ("block", 4.0, 4.0)]);
     press(&mut session, "<Esc>r");
@@ -77,7 +77,7 @@ fn a_model_that_cannot_be_read_does_not_block_the_next_one() {
     let library = with_model(folder.path());
     let broken = library.folder().join("models/broken.npz");
     fs::write(broken, "junk").expect("written");
-    let world = World::new(library).with_model_cache(Some(models()));
+    let world = Jobs::new(library).with_model_cache(Some(models()));
     let mut session = started(world, ":recognise shapes<Enter>o");
     shows(&session, &["broken.npz: ", "Recognise: model shapes"]);
     press(&mut session, "o");
@@ -100,7 +100,7 @@ fn a_model_that_cannot_be_read_does_not_block_the_next_one() {
 #[test]
 fn own_models_name_the_shapes_of_frames() {
     let folder = tempfile::tempdir().expect("a folder");
-    let world = World::new(with_model(folder.path()));
+    let world = Jobs::new(with_model(folder.path()));
     let mut page = started(world, ":watch tests/scripts/touch.csv<Enter>oooo");
     shows(&page, &["shapes are named by model my parts"]);
     press(&mut page, "o");
@@ -118,7 +118,7 @@ fn shows(session: &Session, texts: &[&str]) {
 fn a_stored_model_is_completed_used_and_remembered() {
     let folder = tempfile::tempdir().expect("a folder");
     let library = with_model(folder.path());
-    let world = || World::new(library.clone()).with_model_cache(Some(models()));
+    let world = || Jobs::new(library.clone()).with_model_cache(Some(models()));
     let begin = |keys: &str| started(world(), keys);
     let mut session = begin(":recognise my<Tab><Enter>");
     shows(&session, &["Recognise: model my parts"]);

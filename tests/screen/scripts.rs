@@ -7,8 +7,8 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use taxel::tui::app::state::Options;
+use taxel::tui::jobs::Jobs;
 use taxel::tui::keys::keymap::Keymap;
-use taxel::tui::runtime::World;
 use taxel::tui::script::runner::{ScriptFailure, ScriptOptions, Shown, run};
 
 use crate::session::world;
@@ -189,7 +189,7 @@ fn failed_expectations_and_malformed_commands_are_reported_with_their_line() {
 fn a_signal_keeps_unsaved_work() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let world = || {
-        World::new(taxel_files::storage::Library::open(
+        Jobs::new(taxel_files::storage::Library::open(
             folder.path().to_owned(),
         ))
     };

@@ -4,19 +4,19 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use taxel::tui::app::state::Options;
-use taxel::tui::runtime::World;
+use taxel::tui::jobs::Jobs;
 use taxel::tui::script::Session;
 use taxel_files::storage::ModelCache;
 
 /// Makes an empty library in a temporary folder, which is deleted with the session. A set that any of these tests has
 /// trained is not trained again.
-pub(crate) fn world() -> World {
+pub(crate) fn world() -> Jobs {
     untrained().with_model_cache(Some(models()))
 }
 
 /// Like [`world`], but every set has to be trained.
-pub(crate) fn untrained() -> World {
-    World::scratch().expect("a temporary folder can be made")
+pub(crate) fn untrained() -> Jobs {
+    Jobs::scratch().expect("a temporary folder can be made")
 }
 
 /// Returns the models of these tests. The first call deletes those of an earlier build.
@@ -36,7 +36,7 @@ pub(crate) fn session(keys: &str) -> Session {
 }
 
 /// Like [`session`], with another library or with workers.
-pub(crate) fn started(world: World, keys: &str) -> Session {
+pub(crate) fn started(world: Jobs, keys: &str) -> Session {
     on(world, &Options::plain(false), (80, 24), keys)
 }
 
@@ -46,7 +46,7 @@ pub(crate) fn sized(size: (u16, u16), ascii: bool, keys: &str) -> Session {
 }
 
 /// Like [`session`], with everything given.
-pub(crate) fn on(world: World, options: &Options, size: (u16, u16), keys: &str) -> Session {
+pub(crate) fn on(world: Jobs, options: &Options, size: (u16, u16), keys: &str) -> Session {
     let mut session = Session::new(options, world, size.0, size.1);
     press(&mut session, keys);
     session

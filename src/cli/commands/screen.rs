@@ -21,8 +21,8 @@ use crate::cli::output::charset::Charset;
 use crate::cli::settings::{Choice, Choosable, Settings};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Options};
+use crate::tui::jobs::Jobs;
 use crate::tui::live::message::{LiveMessage, WatchRequest};
-use crate::tui::runtime::World;
 use crate::tui::script::runner::size;
 use crate::tui::terminal;
 use crate::tui::terminal::input::Input;
@@ -101,7 +101,7 @@ pub(crate) fn open(
         // A different seed each time.
         seed: RandomState::new().hash_one(0),
     };
-    let mut world = World::new(cx.shelf.library()?).with_model_cache(ModelCache::of_user());
+    let mut world = Jobs::new(cx.shelf.library()?).with_model_cache(ModelCache::of_user());
     let app = App::new(&options)
         .with_keymap(settings.keymap().clone())
         .with_watch_settings(settings.watch_request());

@@ -26,8 +26,8 @@ use crate::cli::failure::{Failure, Named};
 use crate::cli::input::content::{input_name, open};
 use crate::cli::output::charset::Charset;
 use crate::tui::app::state::Options;
+use crate::tui::jobs::Jobs;
 use crate::tui::keys::key::{Key, parse};
-use crate::tui::runtime::World;
 use crate::tui::script::runner::{self, ScriptFailure, ScriptOptions, Shown, size};
 use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
 
@@ -167,8 +167,8 @@ impl Script {
             update: self.update,
         };
         let world = match cx.shelf.named()? {
-            Some(library) => World::for_script(library),
-            None => World::scratch()?,
+            Some(library) => Jobs::for_script(library),
+            None => Jobs::scratch()?,
         };
         let name = source.map(input_name).unwrap_or_default();
         let script = match source {

@@ -50,7 +50,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::signals::Signals;
 use crate::frames::recording::Recording;
 use crate::frames::{Pipeline, Taring, WatchRequest};
-use crate::tui::runtime::check_source;
+use crate::tui::live::source::check as check_source;
 
 #[derive(Debug, clap::Args)]
 #[command(about = "Show or describe the frames of a sensor, live or played back")]

@@ -21,10 +21,10 @@ use crate::tui::app::page::Page;
 use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, MoveKind, Notice};
 use crate::tui::compare::{Comparison, heading};
+use crate::tui::files;
 use crate::tui::jobs::answer;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
-use crate::tui::runtime::disk::files;
 
 pub(in crate::tui) fn inform(app: &mut App, text: impl Into<String>) {
     app.notice = Some(Notice::Info(text.into()));

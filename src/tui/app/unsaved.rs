@@ -15,8 +15,9 @@ use crate::tui::app::history::DocumentOrigin;
 use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, RunState};
 use crate::tui::explore::ranges::about;
-use crate::tui::jobs::answer;
+use crate::tui::jobs::{Jobs, answer};
 use crate::tui::keys::action;
+use crate::tui::live::source;
 use crate::tui::live::state::Live;
 use crate::tui::live::update::recording;
 use crate::tui::matrix::update::name_of_copy;
@@ -113,10 +114,16 @@ fn losses(app: &App) -> Option<(String, &'static str)> {
     Some(match (&present[..], &earlier[..]) {
         ([], []) => return None,
         (_, []) => ("The imprint is not saved".to_owned(), "lose it"),
-        ([], [one]) => {
+        (present, [one]) => {
             let kind = one.source.as_ref().map_or("drawing", Source::kind_name);
-            let text = format!("An earlier {kind} is not saved; the history ({history}) has it");
-            (text, "lose it")
+            if present.is_empty() {
+                let text =
+                    format!("An earlier {kind} is not saved; the history ({history}) has it");
+                return Some((text, "lose it"));
+            }
+            let what = format!("The imprint and an earlier {kind} are not saved");
+            let text = format!("{what}; the history ({history}) has the {kind}");
+            (text, "lose them")
         }
         (present, earlier) => {
             let count = counted(earlier.len() as u64, "earlier shape");
@@ -247,4 +254,22 @@ fn ago(time: Duration) -> String {
     } else {
         format!("{} ago", about(time))
     }
+}
+
+/// Finishes changes and recordings and writes unsaved work at once, because the program is about to end. Returns lines
+/// about everything that is not on the disk.
+pub(crate) fn end(app: &mut App) -> Vec<String> {
+    source::stop(app);
+    let mut lines = Jobs::finish(app);
+    if !lines.is_empty() && !app.unsaved_work().is_empty() {
+        lines.push("the next start offers it as unsaved work\n".to_owned());
+    }
+    lines
+}
+
+/// Writes everything out because the program is about to be stopped, perhaps for ever. Everything goes on when it is
+/// continued.
+pub(crate) fn flush(app: &mut App) -> Vec<String> {
+    source::flush(app);
+    Jobs::finish(app)
 }

@@ -29,9 +29,9 @@ use crate::tui::explore::angles::AngleCurve;
 use crate::tui::explore::ranges::{RangesForm, about};
 use crate::tui::explore::results::Results;
 use crate::tui::explore::{ExploreMessage, Findings, name_of};
+use crate::tui::files::absolute;
 use crate::tui::jobs::{self, JobProgress, answer};
 use crate::tui::keys::keymap::{Context, Keymap};
-use crate::tui::runtime::disk::files::absolute;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 

@@ -21,10 +21,10 @@ use crate::frames::WatchRequest;
 use crate::frames::recording::{RecordedFrames, Recording};
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::state::App;
+use crate::tui::files::WriteAccess;
 use crate::tui::jobs::{answer, caught, start, wait_until_finished};
 use crate::tui::live::feed::{Feed, FrameBatch};
 use crate::tui::live::update::{arrived, begun_in};
-use crate::tui::runtime::disk::files::WriteAccess;
 
 /// The longest time that a source waits for the thread of the one before to close it: both may be the same serial
 /// line, which only one can open, or the same pipe, whose bytes that thread would take.

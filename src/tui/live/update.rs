@@ -16,6 +16,7 @@ use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::page::{Flow, find_mut};
 use crate::tui::app::state::App;
 use crate::tui::app::status;
+use crate::tui::files;
 use crate::tui::jobs::answer;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
@@ -26,7 +27,6 @@ use crate::tui::live::reading::{self, HeatLayer};
 use crate::tui::live::state::{Live, NO_FRAME, READ_ONCE};
 use crate::tui::live::{names, source, threshold, view};
 use crate::tui::prompt::CommandDialog;
-use crate::tui::runtime::disk::files;
 
 /// Handles a request over the matrix. Requests about the open page, such as a tare, do nothing here, because no page
 /// is open.

@@ -30,9 +30,9 @@ use taxel_files::storage::{Library, below_home};
 
 use crate::tui::app::message::{Message, Mouse, MouseKind};
 use crate::tui::app::state::{App, Options};
+use crate::tui::jobs::Jobs;
 use crate::tui::keys::key::{Key, parse};
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::runtime::World;
 use crate::tui::script::session::Session;
 use crate::tui::widget::theme::{ColorDepth, Palette};
 use crate::tui::widget::write;
@@ -364,18 +364,18 @@ impl Start {
     }
 
     /// Returns the world for the script: `own`, unless the script sets a library or its shapes.
-    fn world(&self, own: World) -> Result<World, String> {
+    fn world(&self, own: Jobs) -> Result<Jobs, String> {
         let has_shapes = !self.shapes.is_empty() || !self.leftovers.is_empty();
         let world = match &self.library {
             Some(_) if has_shapes => {
                 let text = "Set library cannot be used with Set shape or Set leftover";
                 return Err(text.to_owned());
             }
-            Some(library) => World::for_script(library.clone()),
+            Some(library) => Jobs::for_script(library.clone()),
             None if has_shapes => {
                 let shapes: Vec<&StoredShape> = self.shapes.iter().collect();
                 let leftovers: Vec<&StoredShape> = self.leftovers.iter().collect();
-                World::with_contents(&shapes, &leftovers)
+                Jobs::with_contents(&shapes, &leftovers)
                     .map_err(|error| format!("the script's own library: {error}"))?
             }
             None => own,
@@ -393,7 +393,7 @@ pub fn run(
     script: &str,
     keys: &[Key],
     options: &ScriptOptions,
-    world: World,
+    world: Jobs,
     show: &mut dyn FnMut(Shown<'_>) -> ControlFlow<()>,
 ) -> Result<(), ScriptFailure> {
     let mut start = Start {

@@ -5,9 +5,9 @@
 //!
 //! ```
 //! use taxel::tui::app::state::Options;
-//! use taxel::tui::runtime::World;
+//! use taxel::tui::jobs::Jobs;
 //! use taxel::tui::script::Session;
-//! let mut session = Session::new(&Options::plain(true), World::scratch()?, 80, 24);
+//! let mut session = Session::new(&Options::plain(true), Jobs::scratch()?, 80, 24);
 //! session.keys("f<Enter>")?;
 //! assert!(session.screen().contains("ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0 deg"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -31,7 +31,6 @@ use crate::tui::jobs::Jobs;
 use crate::tui::keys::key::{Key, KeyError, parse};
 use crate::tui::live::message::{LiveMessage, NamedSource, SourceState};
 use crate::tui::live::update::{arrived, last_page};
-use crate::tui::runtime::World;
 use crate::tui::widget::theme::{Palette, Theme, letter};
 use crate::tui::widget::write;
 use crate::tui::widget::write::narrow;
@@ -62,11 +61,11 @@ impl DrawnScreen {
 }
 
 impl Session {
-    pub fn new(options: &Options, world: World, width: u16, height: u16) -> Self {
+    pub fn new(options: &Options, world: Jobs, width: u16, height: u16) -> Self {
         Self::of(App::new(options), world, width, height)
     }
 
-    pub fn of(mut app: App, world: World, width: u16, height: u16) -> Self {
+    pub fn of(mut app: App, world: Jobs, width: u16, height: u16) -> Self {
         let screen = DrawnScreen {
             buffer: Buffer::empty(Rect::new(0, 0, width, height)),
             cursor: None,

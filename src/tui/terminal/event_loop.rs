@@ -17,13 +17,13 @@ use crate::tui::app::change::refuse;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, TerminalEffect};
 use crate::tui::app::unsaved::offer;
+use crate::tui::app::unsaved::{end, flush};
 use crate::tui::app::update::update;
 use crate::tui::app::view::draw;
 use crate::tui::jobs::Jobs;
 use crate::tui::keys::action;
 use crate::tui::live::source;
 use crate::tui::live::update::last_page;
-use crate::tui::runtime::{World, end, flush};
 use crate::tui::terminal::input::{self, Input};
 use crate::tui::terminal::screen::Screen;
 use crate::tui::terminal::settings::{TerminalKind, TerminalSettings};
@@ -53,7 +53,7 @@ pub(super) enum Event {
 pub fn run(
     mut app: App,
     first: Option<Message>,
-    world: World,
+    world: Jobs,
     settings: &TerminalSettings,
     watch: &mut dyn FnMut(&Input),
 ) -> io::Result<u8> {

@@ -5,9 +5,9 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use taxel::tui::app::state::Options;
+use taxel::tui::jobs::Jobs;
 use taxel::tui::keys::key::{Key, parse};
 use taxel::tui::keys::keymap::Keymap;
-use taxel::tui::runtime::World;
 use taxel::tui::script::runner::{ScriptOptions, Shown, run};
 use taxel::tui::widget::theme::{ColorDepth, Palette, Theme};
 
@@ -38,7 +38,7 @@ fn screens(script: &str, title: impl Fn(&str) -> String) -> Vec<(String, String)
         is_confined: false,
         update: false,
     };
-    let world = World::scratch().expect("there is a folder for temporary files");
+    let world = Jobs::scratch().expect("there is a folder for temporary files");
     let mut screens = Vec::new();
     run(script, &[], &settings, world, &mut |shown: Shown<'_>| {
         if let Some((name, session)) = shown.screen {

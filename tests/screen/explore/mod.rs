@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use proptest::prelude::*;
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
-use taxel::tui::runtime::World;
+use taxel::tui::jobs::Jobs;
 use taxel::tui::script::Session;
 use taxel_files::storage::Library;
 
@@ -34,7 +34,7 @@ impl Beside {
         Self::within(world(), keys)
     }
 
-    fn within(world: World, keys: &str) -> Self {
+    fn within(world: Jobs, keys: &str) -> Self {
         let (post, told) = channel();
         let world = world.with_threads(Arc::new(move || {
             // The test may have ended.
@@ -156,7 +156,7 @@ fn ctrl_c_stops_a_sweep_before_it_quits() {
 #[test]
 fn ctrl_c_while_a_sweep_runs_keeps_unsaved_work() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
-    let world = || World::new(Library::open(folder.path().to_owned()));
+    let world = || Jobs::new(Library::open(folder.path().to_owned()));
     let mut program = Beside::within(world(), "fr<Enter>");
     program.press(LONG);
     program.until("poses a second");

@@ -7,7 +7,7 @@ use std::path::Path;
 use proptest::prelude::*;
 use taxel::tui::app::document::Document;
 
-use taxel::tui::runtime::World;
+use taxel::tui::jobs::Jobs;
 use taxel::tui::script::Session;
 use taxel_files::storage::Library;
 
@@ -16,7 +16,7 @@ use crate::session::{press, session, shows, started, then};
 
 /// Starts a session on a library that outlasts it.
 fn session_on(folder: &Path, keys: &str) -> Session {
-    started(World::new(Library::open(folder.to_owned())), keys)
+    started(Jobs::new(Library::open(folder.to_owned())), keys)
 }
 
 #[test]

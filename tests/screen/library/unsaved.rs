@@ -6,7 +6,7 @@ use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 
 use taxel::tui::app::message::Message;
-use taxel::tui::runtime::World;
+use taxel::tui::jobs::Jobs;
 use taxel_files::storage::{Library, LibraryEntry, ShapeOrigin};
 
 use super::session_on;
@@ -204,7 +204,7 @@ fn journal_is_written(library: &Path) {
 fn work_that_vanished_from_the_disk_is_written_again_at_the_end() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let library = folder.path().join("library");
-    let world = World::new(Library::open(library.clone()));
+    let world = Jobs::new(Library::open(library.clone()));
     let session = started(world.with_threads(Arc::new(|| {})), "<Space>");
     journal_is_written(&library);
     std::fs::remove_dir_all(&library).expect("removed");
@@ -289,7 +289,7 @@ fn work_that_could_not_be_kept_is_kept_later() {
     let journal = folder.path().join(".journal");
     std::fs::write(&journal, "in the way").expect("written");
     let (post, told) = channel();
-    let world = World::new(Library::open(folder.path().to_owned()));
+    let world = Jobs::new(Library::open(folder.path().to_owned()));
     let world = world.with_threads(Arc::new(move || {
         let _ = post.send(());
     }));

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use rustix::process::Signal;
 use taxel::tui::app::state::{App, Options};
-use taxel::tui::runtime::World;
+use taxel::tui::jobs::Jobs;
 use taxel::tui::terminal;
 use taxel::tui::terminal::input::Input;
 use taxel::tui::terminal::settings::{Flags, TerminalSettings};
@@ -184,7 +184,7 @@ fn panics() {
     let _ = rustix::process::ioctl_tiocsctty(std::io::stdin());
     let settings = TerminalSettings::from_environment(std::env::var_os, &Flags::default());
     let app = App::new(&Options::plain(true));
-    let world = World::scratch().expect("a folder");
+    let world = Jobs::scratch().expect("a folder");
     let status = terminal::run(app, None, world, &settings, &mut |input| {
         assert!(!matches!(input, Input::Key(_)), "on purpose");
     });

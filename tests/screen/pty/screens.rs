@@ -9,7 +9,7 @@ use taxel::tui::script::Session;
 use super::program::{Program, Start, TAXEL};
 
 pub(crate) fn session(ascii: bool, size: (u16, u16)) -> Session {
-    let world = taxel::tui::runtime::World::scratch().expect("a folder");
+    let world = taxel::tui::jobs::Jobs::scratch().expect("a folder");
     Session::new(&Options::plain(ascii), world, size.0, size.1)
 }
 

@@ -11,11 +11,11 @@ use std::path::{Path, PathBuf};
 
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::app::state::{App, Options};
+use taxel::tui::jobs::Jobs;
 use taxel::tui::keys::key::{Arrow, Key, parse};
 use taxel::tui::keys::keymap::{Context, Keymap};
 use taxel::tui::live::message::{LiveMessage, NamedSource};
 use taxel::tui::prompt::commands::{complete, read as read_command};
-use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 use taxel::tui::script::runner::{ScriptOptions, Shown, run};
 use taxel_files::storage::Library;
@@ -52,7 +52,7 @@ const FILES: [(&str, &[u8]); 2] = [
 
 /// Makes an empty library in the scratch folder; other files are written below it. Files of the last input are
 /// removed.
-fn world() -> World {
+fn world() -> Jobs {
     let folder = folder();
     let models = folder.join(MODELS);
     for inside in [&folder, &models] {
@@ -63,7 +63,7 @@ fn world() -> World {
             }
         }
     }
-    World::for_script(Library::open(folder.join("library"))).confined_to(folder)
+    Jobs::for_script(Library::open(folder.join("library"))).confined_to(folder)
 }
 
 /// Removes a file or a folder.

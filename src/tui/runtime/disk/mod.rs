@@ -1,3 +1,0 @@
-//! Files that the screen opens and writes.
-
-pub(crate) mod files;
