@@ -24,8 +24,8 @@ const SHORT: &str = ":explore --x0 5:5.9:0.1 --y0 5:5.9:0.1 --angle 0:50:10<Ente
 const DEADLINE: Duration = Duration::from_secs(60);
 
 /// A program whose workers run beside it, and the events that they report.
-struct Beside {
-    session: Session,
+pub(crate) struct Beside {
+    pub(crate) session: Session,
     told: Receiver<()>,
 }
 
@@ -34,7 +34,7 @@ impl Beside {
         Self::within(world(), keys)
     }
 
-    fn within(world: Jobs, keys: &str) -> Self {
+    pub(crate) fn within(world: Jobs, keys: &str) -> Self {
         let (post, told) = channel();
         let world = world.with_threads(Arc::new(move || {
             // The test may have ended.
@@ -45,7 +45,7 @@ impl Beside {
     }
 
     /// Passes on the events of workers until a text is on the screen.
-    fn until(&mut self, text: &str) {
+    pub(crate) fn until(&mut self, text: &str) {
         while !self.session.screen().contains(text) {
             let told = self.told.recv_timeout(DEADLINE);
             told.unwrap_or_else(|_| panic!("no {text:?} on\n{}", self.session.screen()));
@@ -136,20 +136,14 @@ fn a_stopped_sweep_keeps_its_complete_part() {
 #[test]
 fn escape_stops_a_sweep_and_quitting_does_not_wait_for_it() {
     let mut program = Beside::new("fr<Enter>");
-    program.sweeps_a_part("<Esc>", &[]);
+    program.sweeps_a_part("<Esc>", &["stopping; Ctrl-C quits at once"]);
     // Another sweep from there; the program ends while it runs.
-    program.press("e<C-u>");
-    program.press("0:9.999:0.001<Enter>");
+    program.press("e<C-u>0:9.999:0.001<Enter>");
     program.until("poses a second");
-    program.press("<C-c><C-c>");
-    assert!(program.session.app().ended());
-}
-
-#[test]
-fn ctrl_c_stops_a_sweep_before_it_quits() {
-    let mut program = Beside::new("fr<Enter>");
-    program.sweeps_a_part("<C-c>", &["stopping; Ctrl-C quits at once"]);
+    program.press("<C-c>");
     assert!(!program.session.app().ended());
+    program.press("<C-c>");
+    assert!(program.session.app().ended());
 }
 
 /// A second Ctrl-C quits without a question; the next program offers the work on the matrix.
@@ -168,15 +162,6 @@ fn ctrl_c_while_a_sweep_runs_keeps_unsaved_work() {
         &next.session,
         &["There is unsaved work from last time: rectangle length 6.00 width 3.00, 18\n"],
     );
-}
-
-#[test]
-fn keys_work_while_the_plot_of_angles_is_computed() {
-    let mut program = Beside::new("fr<Enter>");
-    program.press(":explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>");
-    program.until("distinct imprints");
-    program.then("6", &["computing"]);
-    program.until("angle 0°: min");
 }
 
 #[test]
@@ -214,24 +199,6 @@ fn the_expected_time_is_shown_while_ranges_are_typed() {
         "{}",
         program.session.screen()
     );
-}
-
-#[test]
-fn a_stored_shape_is_explored_under_its_name() {
-    let mut page = Beside::new(":load cross<Enter>e");
-    page.then("", &["Explore: cross"]);
-    page.press("<Esc>:explore --x0 0:1:0.5 --y0 0 --angle 0<Enter>");
-    page.until("cross: 3 poses");
-    page.then(
-        "x",
-        &["Export all imprints to: cross.csv   (.csv .jsonl .npz .npy)"],
-    );
-    page.then("<Esc>4x", &["Export to: cross-map.svg", ".npy .svg)"]);
-    // No imprint has a thousand taxels, so there is none to compare, to follow or to put on the matrix.
-    page.press("<Esc>1/na>=1000<Enter>");
-    for key in ["=", "g", "<Enter>"] {
-        page.then(key, &["nothing is selected here"]);
-    }
 }
 
 #[test]
@@ -287,37 +254,6 @@ fn the_imprint_of_a_row_is_the_one_on_the_matrix() {
     }
 }
 
-/// Any key that closes the dialog of running work also stops the work.
-#[test]
-fn every_key_that_closes_the_dialog_stops_the_work() {
-    for leaving in [Message::Cancel, Message::Quit] {
-        let mut program = Beside::new("fr<Enter>");
-        program.press(LONG);
-        program.session.send(leaving);
-        program.until("stopped");
-    }
-}
-
-/// If only the chosen descriptor is visible, a notch of the wheel goes to the next one, like a key.
-#[test]
-fn the_wheel_skips_no_descriptor() {
-    for page in ["3", "5", "6"] {
-        let keys = format!("fr<Enter>{SHORT}{page}");
-        let mut turned = session(&keys);
-        let pressed = session(&format!("{keys}<Down><Down><Up>"));
-        for kind in [
-            MouseKind::ScrollDown,
-            MouseKind::ScrollDown,
-            MouseKind::ScrollUp,
-        ] {
-            let (column, row) = (10, 10);
-            turned.send(Message::Mouse(Mouse { kind, column, row }));
-        }
-        assert_eq!(turned.screen(), pressed.screen(), "page {page}");
-        assert_ne!(turned.screen(), session(&keys).screen(), "page {page}");
-    }
-}
-
 /// A key is shown among the hints if it can do something; otherwise it says why it cannot.
 #[test]
 fn keys_of_explore_that_can_do_nothing_say_so() {
@@ -342,120 +278,20 @@ fn keys_of_explore_that_can_do_nothing_say_so() {
 }
 
 #[test]
-fn a_filter_that_leaves_nothing_is_named_on_each_page_that_it_empties() {
-    for page in ["1", "5"] {
-        let keys = format!("fr<Enter>{SHORT}/na>>500<Enter>{page}");
-        shows(
-            &session(&keys.replace(">>", "<gt>")),
-            &["no imprint fits na>500"],
-        );
-    }
-}
-
-#[test]
-fn a_map_in_ascii_has_its_legend_and_a_cursor_that_is_no_shade() {
-    let keys = "f<Enter>:explore --x0 3:7:0.05 --y0 3:7:0.05 --angle 0:45:5<Enter>4>>";
-    let screen = sized((80, 24), true, keys);
-    shows(
-        &screen,
-        &["angle 10 deg 3/10  each shade an imprint; 1 in 3 x 3 "],
-    );
-    shows(&screen, &["\n3.00 X"]);
-}
-
-#[test]
 fn a_curve_of_a_sample_says_so_and_keeps_its_legend() {
     let keys = "f<Enter>:explore --x0 5 --y0 5:5.99:0.01 --angle 0:359:1<Enter>6";
     let sampled = "NA (na) against the angle; sampled: 1 in 5 y0  line: mean, dashes: min, max";
     shows(&sized((80, 24), false, keys), &[sampled]);
 }
 
-#[test]
-fn a_click_reaches_every_angle_of_a_fine_sweep() {
-    let mut session = session("f<Enter>:explore --x0 5 --y0 5 --angle 0:359.99:0.01<Enter>6");
-    shows(&session, &["angle 0°:"]);
-    for kind in [MouseKind::Press, MouseKind::Release] {
-        let (column, row) = (75, 10);
-        session.send(Message::Mouse(Mouse { kind, column, row }));
-    }
-    shows(&session, &["angle 35"]);
-}
-
-#[test]
-fn the_row_of_the_anchor_says_what_changes_it() {
-    let keys = "fr<Enter>e<S-Tab>g";
-    shows(keys, &["! an arrow or Space chooses the other anchor"]);
-    shows("fr<Enter>e<S-Tab><Space>", &["< centre >"]);
-}
-
 fn any_keys() -> impl Strategy<Value = Vec<&'static str>> {
-    let key = prop::sample::select(vec![
-        "e",
-        "e<Enter>",
-        "<Enter>",
-        "<Esc>",
-        "1",
-        "2",
-        "3",
-        "4",
-        "5",
-        "6",
-        "+",
-        "-",
-        "/na>18 holes=0<Enter>",
-        "/zz<Enter>",
-        "/<C-u><Enter>",
-        "s",
-        "#",
-        "<Tab>",
-        "<S-Tab>",
-        "d",
-        "D",
-        "n",
-        "f",
-        "v",
-        "c",
-        "h",
-        "j",
-        "g",
-        "<Up>",
-        "<Down>",
-        "<Left>",
-        "<Right>",
-        "<Home>",
-        "<End>",
-        "<PageUp>",
-        "<PageDown>",
-        "<lt>",
-        ">",
-        "(",
-        ")",
-        "z",
-        "Z",
-        "w",
-        "W",
-        "?",
-        "s",
-        "q",
-        "y",
-        "x<C-u>",
-        "a.txt",
-        "<BS>",
-        "<C-u>",
-        "5:6:0.5",
-        "0:350:10",
-        "-3",
-        "fr<Enter>",
-        "fe<Tab>3<Enter>",
-        "<Space>",
-        "u",
-        "U",
-        "S8<Enter>",
-        "<Space><Right><Space>",
-        SHORT,
-        ":explore --x0 -9:9:0.7 --y0 -9:15:1.1 --anchor centre<Enter>",
-        ":explore --zoom-x 1:3:0.5<Enter>",
-    ]);
+    let keys = "e|e<Enter>|<Enter>|<Esc>|1|2|3|4|5|6|+|-|/na>18 holes=0<Enter>|/zz<Enter>|/<C-u><Enter>|s|<Tab>|\
+        <S-Tab>|d|D|n|f|j|g|<Up>|<Down>|<Left>|<Right>|<Home>|<End>|<PageUp>|<PageDown>|<lt>|>|z|?|s|q|\
+        y|x<C-u>|a.txt|<BS>|<C-u>|5:6:0.5|0:350:10|-3|fr<Enter>|fe<Tab>3<Enter>|<Space>|u|U|S8<Enter>|\
+        <Space><Right><Space>|:explore --x0 -9:9:0.7 --y0 -9:15:1.1 --anchor centre<Enter>|\
+        :explore --zoom-x 1:3:0.5<Enter>|";
+    let keys = keys.split_terminator('|').chain([SHORT]);
+    let key = prop::sample::select(keys.collect::<Vec<_>>());
     prop::collection::vec(key, 0..60)
 }
 
