@@ -16,7 +16,6 @@ use taxel_core::index::wide;
 use taxel_core::progress::ToTheEnd;
 use taxel_core::quote::did_you_mean;
 use taxel_core::recognition::{Answer, AnswerState, Evidence, Model, Noise, NoiseError};
-use taxel_core::sensor::Sensor;
 use taxel_files::ReadError;
 use taxel_files::formats::file::without_mark;
 use taxel_files::formats::job::{FrameRows, RuleRecord};
@@ -51,7 +50,7 @@ answered, it is 1.
 
 Built-in models: 'figures', the seven figures at their default sizes;
 'figures-30', the same figures at about 30 cells each; 'shapes', the shapes that
-come with taxel. 'taxel model train' makes others.
+come with taxel.
 
 Examples:
   taxel recognise touch.txt --model figures-30 --pose
@@ -317,17 +316,16 @@ impl Recognise {
         namer: &Namer,
         cx: &Context,
     ) -> Result<(), Failure> {
+        let trained = namer.model.sensor().threshold();
         if let Content::Shape(shape) = content
             && shape.source.is_some()
+            && shape.sensor.threshold() != trained
         {
-            let [trained, own] = [namer.model.sensor(), &shape.sensor].map(Sensor::threshold);
-            if own != trained {
-                let trained = format!("but the model was trained at {trained}");
-                cx.note(&format!(
-                    "{}: touched at threshold {own}, {trained}",
-                    shape.name
-                ));
-            }
+            let touched = format!("touched at threshold {}", shape.sensor.threshold());
+            let name = &shape.name;
+            cx.note(&format!(
+                "{name}: {touched}, but the model was trained at {trained}"
+            ));
         }
         let touch = content.imprint();
         check_mask(&[*touch], namer)?;
@@ -349,9 +347,7 @@ impl Recognise {
             AnswerState::Tied => &answer.tied[..],
             _ => answer.shape.as_slice(),
         };
-        let names = names
-            .iter()
-            .map(|&shape| format!("{:?}", namer.name(shape)));
+        let names = names.iter().map(|&own| format!("{:?}", namer.name(own)));
         let names = names.collect::<Vec<_>>().join(" or ");
         let found = if names.is_empty() { "no shape" } else { &names };
         Err(self.unexpected(&format!("{found} ({})", answer.state.name())))
@@ -401,20 +397,14 @@ enum Question {
 }
 
 fn check_mask(touches: &[Imprint], namer: &Namer) -> Result<(), Failure> {
-    let Some(mask) = namer
-        .noise
-        .as_ref()
-        .and_then(Noise::dead)
-        .map(Imprint::size)
-    else {
-        return Ok(());
-    };
-    match touches.iter().map(Imprint::size).find(|size| *size != mask) {
-        None => Ok(()),
-        Some(size) => Err(Failure::new(format!(
-            "--mask has {mask} taxels, the imprint {size}"
-        ))),
+    let mask = namer.noise.as_ref().and_then(Noise::dead);
+    for touch in touches.iter().map(Imprint::size) {
+        if let Some(mask) = mask.map(Imprint::size).filter(|mask| *mask != touch) {
+            let text = format!("--mask has {mask} taxels, the imprint {touch}");
+            return Err(Failure::new(text));
+        }
     }
+    Ok(())
 }
 
 /// Whether a text begins with a question: a whole JSON object that is not a stored shape, even if it is wrong. An

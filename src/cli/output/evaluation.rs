@@ -79,21 +79,22 @@ pub(crate) const WEIGHTED: &str = "each touch counts with the weight of its shap
 
 pub(crate) fn summary(own: &Evaluation, named: NamedBy) -> String {
     let keys = own.keys as u64;
+    let imprints = counted(keys, "distinct imprint") + " up to shifts";
+    let values = counted(keys, "distinct combination") + " of their values";
     let (distinct, limit, certain) = match named {
-        NamedBy::Descriptors => (
-            counted(keys, "distinct combination") + " of their values",
-            "no method that sees only these descriptors does better",
-            "no other shape has the same values",
+        NamedBy::Imprint => (
+            imprints,
+            "the limit: no method does better",
+            "leaves the same imprint",
         ),
-        NamedBy::Imprint | NamedBy::Classifier => (
-            counted(keys, "distinct imprint") + " up to shifts",
-            match named {
-                NamedBy::Classifier => "",
-                _ => "the limit: no method does better",
-            },
-            "no other shape leaves the same imprint",
+        NamedBy::Classifier => (imprints, "", ""),
+        NamedBy::Descriptors => (
+            values,
+            "no method that sees only these descriptors does better",
+            "has the same values",
         ),
     };
+    let certain = format!("no other shape {certain}");
     let (touches, shapes) = (counted(own.touches, "touch"), own.labels.len() as u64);
     let mut text = format!("{touches} of {}, {distinct}\n", counted(shapes, "shape"));
     if own.is_weighted() {
@@ -113,7 +114,7 @@ pub(crate) fn summary(own: &Evaluation, named: NamedBy) -> String {
     ];
     rows.extend(
         own.certainty
-            .map(|own| row("certain", own.touches, certain)),
+            .map(|own| row("certain", own.touches, &certain)),
     );
     rows.push(row(
         "tied",

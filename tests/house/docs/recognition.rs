@@ -77,7 +77,7 @@ pub(crate) fn sizes() -> String {
 
 pub(crate) fn want() -> String {
     shown(&[
-        "taxel model separate figures.npz --scale 0.5:3:0.1 --positions 20 --want 0.01 --quiet | tail -19",
+        "taxel model separate figures.npz --scale 0.5:3:0.1 --positions 20 --want 0.01 --quiet | tail -18",
     ])
 }
 

@@ -82,12 +82,8 @@ pub(crate) struct Confusion {
     #[arg(long, value_name = "NAME", value_parser = classifiers(), hide_possible_values = true)]
     classifier: Option<String>,
     /// Round a descriptor to steps, such as cg_cd=0.01
-    #[arg(
-        long,
-        value_name = "KEY=STEP",
-        requires = "descriptors",
-        conflicts_with = "classifier"
-    )]
+    #[arg(long, value_name = "KEY=STEP", requires = "descriptors")]
+    #[arg(conflicts_with = "classifier")]
     round: Vec<Rounding>,
     /// Neighbours that vote in knn; default 1
     #[arg(long, value_name = "N", requires = "with_classifier", value_parser = whole(1_u32..))]
@@ -154,29 +150,19 @@ impl Confusion {
         let drawn = self.noise.noise.is_some() || is("knn");
         let with = format!("with --classifier {name}");
         let without = "without --noise or --classifier knn, which draw touches";
-        let given = |own: &Rounding| {
+        let known = |own: &Rounding| {
             let given = self.given.as_ref();
             given.is_none_or(|given| given.descriptors.contains(&own.descriptor))
         };
+        let (neighbours, templates) = (self.neighbours.is_some(), self.templates.is_some());
+        let unknown = !self.round.iter().all(known);
         let unused = [
-            (
-                "neighbours",
-                self.neighbours.is_some() && !is("knn"),
-                &*with,
-            ),
+            ("neighbours", neighbours && !is("knn"), &*with),
             ("sample", self.sample.is_some() && !is("knn"), &with),
-            (
-                "templates",
-                self.templates.is_some() && !is("template"),
-                &with,
-            ),
+            ("templates", templates && !is("template"), &with),
             ("given", self.given.is_some() && name == "template", &with),
             ("seed", self.seed.is_some() && !drawn, without),
-            (
-                "round",
-                !self.round.iter().all(given),
-                "for what --given does not name",
-            ),
+            ("round", unknown, "for what --given does not name"),
         ];
         match unused.into_iter().find(|(_, is_unused, _)| *is_unused) {
             None => Ok(()),
@@ -193,27 +179,22 @@ impl Confusion {
         let shapes: Vec<String> = names.collect();
         let is_table = self.classifier.as_deref() == Some(ALL);
         let is_matrix = !(is_table || self.greedy || self.noise.noise.is_some());
-        if is_matrix {
-            let table = if self.pairs {
-                "--pairs"
-            } else {
-                "confusion matrix"
-            };
-            fits_in_table(table, shapes.len())?;
+        match self.pairs {
+            true => fits_in_table("--pairs", shapes.len())?,
+            false if is_matrix => fits_in_table("confusion matrix", shapes.len())?,
+            false => {}
         }
         self.noise.check(&found.sensor())?;
-        if let Some(path) = self.table.drawing() {
-            let most = "shapes, and a drawing shows at most 64; .csv takes all";
-            let refused = if is_table {
-                "expected a name that ends in .csv, for the table of all classifiers".to_owned()
-            } else if is_matrix && ConfusionMap::new(&shapes, []).is_none() {
-                format!("{} {most}", shapes.len())
-            } else {
-                return self.table.check();
-            };
-            return Err(Failure::new(refused)).named(path.display());
+        let most = "shapes, and a drawing shows at most 64; .csv takes all";
+        let fits = !is_matrix || ConfusionMap::new(&shapes, []).is_some();
+        let refused = match is_table {
+            true => "expected a name that ends in .csv, for the table of all classifiers".into(),
+            false => format!("{} {most}", shapes.len()),
+        };
+        match self.table.drawing().filter(|_| is_table || !fits) {
+            Some(path) => Err(Failure::new(refused)).named(path.display()),
+            None => self.table.check(),
         }
-        self.table.check()
     }
 
     /// The descriptors that are known instead of the imprint, if only some are.
@@ -264,10 +245,8 @@ impl Confusion {
         };
         let mut rows = vec![row(["descriptors chosen one by one", "error", "values"])];
         for step in &chosen {
-            rows.push(cells(
-                &format!("+ {}", step.descriptor.key()),
-                &step.evaluation,
-            ));
+            let name = format!("+ {}", step.descriptor.key());
+            rows.push(cells(&name, &step.evaluation));
         }
         rows.push(cells("limit: the whole imprint", &limit));
         table(&rows, &[0], charset)

@@ -72,11 +72,6 @@ fn text(model: &Model, limit: &Evaluation) -> String {
         }
         text.push('\n');
     }
-    let is_even = |pair: &[NamedShape]| pair[0].weight == pair[1].weight;
-    text += match model.shapes().windows(2).all(is_even) {
-        true => "prior: all shapes are equally likely\n",
-        false => "prior: shapes are as likely as their weights say\n",
-    };
     let cut: u64 = model.cut().iter().sum();
     text += &format!("{} each", counted(model.poses(), "pose"));
     if model.shard() != Shard::WHOLE {

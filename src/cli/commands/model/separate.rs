@@ -53,9 +53,8 @@ called 'keys' and 'side'.
 
 --want tries every scale from the smallest up, or every pitch from the coarsest
 down, and then tenths of a step before the first one that reaches the error. A
-larger shape is not always easier to name, so --want also prints how many of the
-larger scales, or finer pitches, miss the error again. With --csv, its answer
-goes to standard error.
+larger shape is not always easier to name, so it also says how many of the
+larger scales, or finer pitches, miss the error again.
 
 Examples:
   taxel model separate parts --scale 0.5:2:0.1 --positions 20
@@ -110,28 +109,26 @@ impl Separate {
     pub(super) fn run(self, cx: &Context) -> Result<(), Failure> {
         self.check()?;
         let (separation, usual) = self.separation(cx)?;
-        let thresholds = self
-            .threshold
-            .map_or(vec![usual], |range| range.values().collect());
+        let thresholds = self.threshold.as_ref();
+        let thresholds = thresholds.map_or(vec![usual], |range| range.values().collect());
+        let scale = self.scale.unwrap_or(DecimalRange::whole(1));
         let (axis, range) = match self.pitch {
             Some(pitch) => (SizeAxis::Pitch, pitch),
-            None => (
-                SizeAxis::Scale,
-                self.scale.unwrap_or(DecimalRange::whole(1)),
-            ),
+            None => (SizeAxis::Scale, scale),
         };
         let (mut sizes, mut left_out) = (Vec::new(), Vec::new());
         for size in axis.smallest_first(&range) {
-            let fits = thresholds.iter().try_fold(true, |fits, threshold| {
+            let mut list = &mut sizes;
+            for threshold in &thresholds {
                 match separation.training(axis.scale(size), *threshold) {
-                    Err(TrainingError::Large) => Ok(false),
-                    Err(error) => {
-                        Err(error).named(format!("{} {size}, threshold {threshold}", axis.name()))
+                    Err(TrainingError::Large) => list = &mut left_out,
+                    tried => {
+                        let place = format!("{} {size}, threshold {threshold}", axis.name());
+                        tried.map(drop).named(place)?;
                     }
-                    Ok(_) => Ok(fits),
                 }
-            })?;
-            if fits { &mut sizes } else { &mut left_out }.push(size);
+            }
+            list.push(size);
         }
         self.table.check()?;
         if let (Some(first), Some(last)) = (left_out.first(), left_out.last()) {
@@ -162,12 +159,10 @@ impl Separate {
             };
             thresholds.iter().map(curve).collect()
         })?;
-        let (step, wanted) = (range.step(), self.want);
         let curves = Curves {
             axis,
-            step,
             curves,
-            wanted,
+            wanted: self.want,
         };
         if self.table.csv {
             // The table has no place for the result of --want. It is an answer, not a note, so --quiet does not
@@ -183,10 +178,9 @@ impl Separate {
             (self.pitch, "pitch", 1000.0, "above 0, up to 1000"),
             (self.threshold, "threshold", 1.0, "above 0, up to 1"),
         ] {
-            let mut ends = range
-                .iter()
-                .flat_map(|range| [range.value(0), range.last()]);
-            if let Some(value) = ends.find(|&value| value <= 0.0 || value > most) {
+            let ends = range.map(|range| [range.value(0), range.last()]);
+            let wrong = |value: &f64| *value <= 0.0 || *value > most;
+            if let Some(value) = ends.iter().flatten().copied().find(wrong) {
                 let value = number::short(value);
                 let text = format!("--{flag} {value} is out of range (allowed: {allowed})");
                 return Err(Failure::new(text));
@@ -251,8 +245,6 @@ type Curve = (f64, Vec<SeparationPoint>, Option<SmallestSize>);
 
 struct Curves {
     axis: SizeAxis,
-    /// The distance of the sizes.
-    step: f64,
     curves: Vec<Curve>,
     wanted: Option<f64>,
 }
@@ -295,10 +287,8 @@ impl Curves {
         if several && self.curves.iter().all(|(_, points, _)| points.len() == 1) {
             let points = self.points().map(|point| (point.threshold, point.error()));
             let size = self.points().next().map_or(0.0, |point| point.value);
-            return (
-                "threshold",
-                vec![(format!("{name} {}", short(size)), points.collect())],
-            );
+            let curve = (format!("{name} {}", short(size)), points.collect());
+            return ("threshold", vec![curve]);
         }
         let curves = self.curves.iter().map(|(threshold, points, _)| {
             let points = points.iter().map(|point| (point.value, point.error()));
@@ -307,8 +297,7 @@ impl Curves {
         (name, curves.collect())
     }
 
-    /// What the search found for each threshold, and how it searched. The steps are named because the error is not
-    /// monotonic in the size: a size between two that were tried may reach the wanted error as well.
+    /// What the search found for each threshold.
     fn found(&self) -> String {
         let Some(wanted) = self.wanted.map(short) else {
             return String::new();
@@ -319,35 +308,24 @@ impl Curves {
             SizeAxis::Pitch => ["pitch", "coarsest", "coarser", "finer", " mm"],
         };
         let mut text = String::new();
-        for (threshold, points, smallest) in &self.curves {
+        for (threshold, _, smallest) in &self.curves {
             if self.curves.len() > 1 {
                 text += &format!("threshold {}: ", short(*threshold));
             }
-            let Some(SmallestSize {
-                point,
-                step,
-                missed_again,
-            }) = smallest
-            else {
+            let Some(found) = smallest else {
                 text += &format!("no {noun} that was tried has an error of at most {wanted}\n");
                 continue;
             };
-            let (size, error) = (short(point.value), percent(point.error()));
+            let (size, error) = (short(found.point.value), percent(found.point.error()));
             text += &format!(
                 "the {extreme} {noun} with an error of at most {wanted} is {size}{unit}: {error}\n"
             );
-            text += &match (points.len(), *step > 0.0) {
-                (1, _) => format!("  no other {noun} was tried\n"),
-                (_, false) => {
-                    format!("  no {smaller} {noun} was tried; one may reach the error as well\n")
-                }
-                (_, true) => {
-                    let (coarse, fine) = (short(self.step), short(*step));
-                    format!("  tried in steps of {coarse}{unit}, then in steps of {fine}{unit}\n")
-                }
-            };
-            if *missed_again > 0 {
-                let sizes = counted(*missed_again as u64, &format!("{larger} {noun}"));
+            if found.step == 0.0 {
+                text +=
+                    &format!("  no {smaller} {noun} was tried; one may reach the error as well\n");
+            }
+            if found.missed_again > 0 {
+                let sizes = counted(found.missed_again as u64, &format!("{larger} {noun}"));
                 text +=
                     &format!("  the error is not monotonic: it is too large again at {sizes}\n");
             }
@@ -359,27 +337,16 @@ impl Curves {
 impl Table for Curves {
     fn text(&self, charset: Charset) -> String {
         let name = self.axis.name();
-        let mut rows = vec![row([
-            name,
-            "threshold",
-            "error",
-            "certain",
-            "imprints",
-            "sensor",
-        ])];
-        rows.extend(self.points().map(|point| {
+        let titles = ["threshold", "error", "certain", "imprints", "sensor"];
+        let [threshold, error, certain, imprints, sensor] = titles;
+        let mut rows = vec![row([name, threshold, error, certain, imprints, sensor])];
+        for point in self.points() {
             let (side, keys) = (point.side, grouped(point.keys as u64));
             let (error, certain) = (percent(point.error()), percent(point.certain_share()));
             let (size, threshold) = (short(point.value), short(point.threshold));
-            vec![
-                size,
-                threshold,
-                error,
-                certain,
-                keys,
-                format!("{side} × {side}"),
-            ]
-        }));
+            let side = format!("{side} × {side}");
+            rows.push(row([&size, &threshold, &error, &certain, &keys, &side]));
+        }
         let mut text = table(&rows, &[0], charset);
         let (name, curves) = self.plotted();
         for (title, points) in &curves {
@@ -432,12 +399,8 @@ impl Table for Curves {
     /// The wanted error is a line as long as the curves.
     fn svg(&self) -> Option<String> {
         let (name, curves) = self.plotted();
-        let name = if name == "pitch_mm" {
-            "pitch / mm"
-        } else {
-            name
-        };
-        let mut plot = Plot::from_zero(name, "error");
+        let name = name.replace("_mm", " / mm");
+        let mut plot = Plot::from_zero(&name, "error");
         for (title, points) in &curves {
             plot = plot.with_curve(title, points);
         }
