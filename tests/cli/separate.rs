@@ -2,7 +2,6 @@
 
 use serde_json::Value;
 
-use super::misused;
 use super::model::{COARSE, Place};
 
 #[test]
@@ -101,29 +100,13 @@ fn sizes_that_fit_on_no_sensor_are_omitted() {
         assert_eq!((run.status, found), (Some(0), scales));
         assert_eq!(run.stderr, format!("left out: {left_out}: {large}\n"));
     }
-    for (set, message) in [
-        (
-            "rectangles.jsonl --scale 19:20:1",
-            format!("scale 19 to 20: {large}"),
-        ),
-        (
-            "rectangles.jsonl --threshold 0.5:1.5:0.5",
-            "--threshold 1.5 is out of range (allowed: above 0, up to 1)".to_owned(),
-        ),
-        (
-            "rectangles.jsonl --pitch 0:1:0.5",
-            "--pitch 0 is out of range (allowed: above 0, up to 1000)".to_owned(),
-        ),
-        (
-            "figures washer --scale 1",
-            "figures: a model; give one model or several shapes, not both".to_owned(),
-        ),
-    ] {
-        place.refuses(&format!("model separate {set} --quiet"), "", &message);
-    }
-    misused("model separate a.npz", "the following required arguments");
-    misused(
-        "model separate a.npz --scale 1 --pitch 1",
-        "the argument '--scale <RANGE>' cannot be used with '--pitch",
-    );
+    let lines = [
+        "rectangles.jsonl --scale 19:20:1",
+        "rectangles.jsonl --threshold 0.5:1.5:0.5",
+        "rectangles.jsonl --pitch 0:1:0.5",
+        "figures washer --scale 1",
+        "rectangles.jsonl",
+        "rectangles.jsonl --scale 1 --pitch 1",
+    ];
+    insta::assert_snapshot!("sizes_refused", place.transcript("model separate", &lines));
 }
