@@ -1,7 +1,6 @@
 //! The program's own screens: the output of each `tests/scripts/NAME.taxel` must equal `NAME.snap` beside it.
 //!
-//! `INSTA_UPDATE=always cargo test --test screen scripts` rewrites them; then read the difference. The same scripts
-//! run on the real program in a pseudo-terminal (`tests/screen/pty`).
+//! `INSTA_UPDATE=always cargo test --test screen scripts` rewrites them; then read the difference.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
