@@ -24,7 +24,7 @@ use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::{Context, Keymap};
-use crate::tui::live::heat::{HeatGrid, HeatMap, LivePanes, cells, scale};
+use crate::tui::live::heat::{self, HeatMap, LivePanes, cells, scale};
 use crate::tui::live::message::{LiveMessage, SourceState};
 use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::state::{Live, NO_FRAME};
@@ -97,7 +97,7 @@ impl Page for Live {
             panes.title,
         );
         if let Some(map) = &map {
-            map.draw(buffer, panes.map);
+            map.draw(buffer);
         }
         let lines = lines(self, theme, keymap, map.as_ref().and_then(HeatMap::legend));
         let mut panel = panes.panel;
@@ -153,15 +153,14 @@ fn at_end(live: &Live, keymap: &Keymap) -> Option<String> {
 
 fn panes(live: &Live, area: Rect) -> LivePanes {
     let reading = live.shown_reading();
-    let size = reading.map(|reading| (reading.values.columns(), reading.values.rows()));
-    LivePanes::of(area, size, live.numbers)
+    LivePanes::of(area, reading.map(|reading| &reading.values), live.numbers)
 }
 
 /// Returns true if some taxels do not fit on a page of this area, although the heat map is shown.
-pub(super) fn hides_taxels(live: &Live, area: Rect) -> bool {
+fn hides_taxels(live: &Live, area: Rect) -> bool {
     live.shown_reading().is_some_and(|reading| {
-        let size = (reading.values.columns(), reading.values.rows());
-        let grid = HeatGrid::of(panes(live, area).map, size, live.numbers, (0, 0));
+        let map = panes(live, area).map;
+        let grid = heat::grid(map, &reading.values, live.numbers, (0, 0));
         !(grid.columns.is_whole() && grid.rows.is_whole())
     })
 }
