@@ -27,6 +27,7 @@ use crate::formats::json::RegionRecord;
 use crate::formats::numpy::Number;
 use crate::formats::numpy::archive::{ArrayReader, ArrayWriter, in_header, little_endian};
 use crate::formats::record::no_names;
+use crate::formats::value::csv_line;
 
 /// Returns the share of all poses that leave this imprint: above 0, up to 1.
 pub fn pose_share(result: &SweepResult, entry: &AtlasEntry) -> f64 {
@@ -37,8 +38,7 @@ pub fn pose_share(result: &SweepResult, entry: &AtlasEntry) -> f64 {
 ///
 /// # Errors
 /// Returns the errors of the writer.
-pub fn write_csv(result: &SweepResult, output: impl Write) -> io::Result<()> {
-    let mut table = csv::Writer::from_writer(output);
+pub fn write_csv(result: &SweepResult, mut output: impl Write) -> io::Result<()> {
     let mut line = vec!["id".to_owned(), "count".to_owned(), "share".to_owned()];
     line.extend(
         result
@@ -49,7 +49,7 @@ pub fn write_csv(result: &SweepResult, output: impl Write) -> io::Result<()> {
     line.extend(["pieces", "holes"].map(str::to_owned));
     line.extend(features().iter().map(|feature| feature.key.clone()));
     line.push("imprint".to_owned());
-    table.write_record(&line)?;
+    output.write_all(csv_line(&line).as_bytes())?;
     for entry in result.atlas.entries() {
         let pose = result.grid.pose(entry.first_pose);
         line.clear();
@@ -65,9 +65,9 @@ pub fn write_csv(result: &SweepResult, output: impl Write) -> io::Result<()> {
             });
         }
         line.push(entry.imprint.lines().collect::<Vec<_>>().join("/"));
-        table.write_record(&line)?;
+        output.write_all(csv_line(&line).as_bytes())?;
     }
-    table.flush()
+    output.flush()
 }
 
 /// Writes a line of JSON per imprint:

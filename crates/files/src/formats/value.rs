@@ -194,6 +194,19 @@ pub fn character(share: f64, ascii: bool) -> char {
     }
 }
 
+/// Returns a line of comma-separated values. A field with a comma, a quotation mark or a line break is quoted (RFC 4180).
+pub fn csv_line(fields: impl IntoIterator<Item: AsRef<str>>) -> String {
+    let quoted = fields.into_iter().map(|field| {
+        let field = field.as_ref();
+        if field.contains([',', '"', '\r', '\n']) {
+            format!("\"{}\"", field.replace('"', "\"\""))
+        } else {
+            field.to_owned()
+        }
+    });
+    quoted.collect::<Vec<_>>().join(",") + "\n"
+}
+
 /// Escapes the characters that have a meaning in XML, and replaces control characters and those that XML does not
 /// allow. For the content of an element and for values in double quotes.
 pub fn escaped(text: &str) -> String {

@@ -16,7 +16,7 @@ use taxel_core::recognition::{
     Classifier, ClassifierEvaluation, ClassifierSettings, Evaluation, GivenDescriptors, Model,
     Rounding,
 };
-use taxel_files::formats::value::{grouped, percent, percentage};
+use taxel_files::formats::value::{csv_line, grouped, percent, percentage};
 use taxel_files::formats::{ConfusionMap, json};
 use taxel_files::storage::FoundModel;
 
@@ -319,18 +319,14 @@ impl Table for Matrix<'_> {
     }
 
     fn csv(&self) -> String {
-        let mut table = csv::Writer::from_writer(Vec::new());
-        let mut write = |name: &str, cells: &[String]| {
-            let cells = cells.iter().map(String::as_str);
-            // Cannot fail: the table is kept in memory, and all rows have the same length.
-            let _ = table.write_record(iter::once(name).chain(cells));
+        let line = |name: &str, cells: &[String]| {
+            csv_line(iter::once(name).chain(cells.iter().map(String::as_str)))
         };
-        write("true", &self.0.labels);
+        let mut table = line("true", &self.0.labels);
         for (name, row) in self.0.labels.iter().zip(self.0.confusion.rows()) {
-            write(name, &row.iter().map(u128::to_string).collect::<Vec<_>>());
+            table += &line(name, &row.iter().map(u128::to_string).collect::<Vec<_>>());
         }
-        let _ = table.flush();
-        String::from_utf8_lossy(table.get_ref()).into_owned()
+        table
     }
 
     fn json(&self) -> String {

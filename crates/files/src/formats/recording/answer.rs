@@ -8,6 +8,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::serialize::Shortest;
 
 use crate::formats::json::RegionRecord;
+use crate::formats::value::csv_line;
 
 /// An answer that serialises as an object:
 /// ```text
@@ -71,14 +72,14 @@ const COLUMNS: [&str; 10] = [
 
 impl FrameAnswer<'_> {
     /// Returns the names of the columns of [`Self::csv_line`] as a line of CSV.
-    pub fn csv_header() -> Vec<u8> {
+    pub fn csv_header() -> String {
         let descriptors = features().iter().map(|feature| feature.key.clone());
         csv_line(COLUMNS.map(str::to_owned).into_iter().chain(descriptors))
     }
 
     /// Returns the frame as a line of CSV: the numbers of the JSON form, and the descriptors of the main region. A field
     /// is empty if the value does not exist; so are all descriptors without an active taxel.
-    pub fn csv_line(&self) -> Vec<u8> {
+    pub fn csv_line(&self) -> String {
         let Self {
             frame,
             channel,
@@ -107,13 +108,6 @@ impl FrameAnswer<'_> {
         }
         csv_line(fields)
     }
-}
-
-fn csv_line(fields: impl IntoIterator<Item = String>) -> Vec<u8> {
-    let mut line = csv::Writer::from_writer(Vec::new());
-    // Cannot fail: the line is kept in memory.
-    let _ = line.write_record(fields.into_iter().map(String::into_bytes));
-    line.into_inner().unwrap_or_default()
 }
 
 #[cfg(test)]
