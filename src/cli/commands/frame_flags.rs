@@ -161,9 +161,8 @@ impl ThresholdFlags {
             });
             return both.map(Some);
         }
-        type Make = fn(f64) -> Result<Rule, FrameError>;
-        let rules: [(_, _, Make); 3] = [
-            ("at-least", self.at_least, Rule::at_least),
+        let rules = [
+            ("at-least", self.at_least, Rule::at_least as fn(f64) -> _),
             ("percent", self.percent, Rule::percent),
             ("deviations", self.deviations, Rule::noise),
         ];

@@ -41,6 +41,7 @@ use crate::cli::output::plot::heat_map;
 use crate::cli::output::report;
 use crate::frames::{Pipeline, Taring};
 
+#[expect(clippy::struct_excessive_bools, reason = "one for each flag")]
 #[derive(Debug, clap::Args)]
 #[command(about = "List a recording of a real sensor, or describe its frames")]
 #[command(after_help = EXAMPLES)]
@@ -85,7 +86,7 @@ pub(crate) struct Frames {
     #[command(flatten)]
     keep: KeepFlags,
     #[command(flatten)]
-    frames: FrameFlags,
+    reading: FrameFlags,
     #[command(flatten)]
     naming: NamingFlags,
     #[command(flatten)]
@@ -169,11 +170,11 @@ impl Frames {
             ));
         }
         let pipeline = self
-            .frames
+            .reading
             .pipeline(&cx.settings.watch_request().pipeline)?;
         let mask = pipeline.processing.view.mask.as_ref();
         let found = self.naming.find(mask, &cx.shelf)?;
-        let recording = RecordingFile::open(&self.file, self.frames.reading())?;
+        let recording = RecordingFile::open(&self.file, self.reading.reading())?;
         let namer = found
             .map(|found| found.ready(false, cx.charset))
             .transpose()?;
@@ -452,7 +453,7 @@ impl Answering<'_> {
     fn run(&self, mut recording: RecordingFile) -> Result<(), Failure> {
         let view = &self.pipeline.processing.view;
         let mut scan = Scan::of(&mut recording, view, self.asked.label.as_ref());
-        let wanted = self.asked.frames.channel.as_deref();
+        let wanted = self.asked.reading.channel.as_deref();
         if let Some(complaint) = &recording.complaint {
             self.cx.note(&format!("warning: {complaint}"));
         }
@@ -529,7 +530,7 @@ impl Answering<'_> {
         let stated = channels
             .filter(|info| wanted.is_none_or(|wanted| wanted == info.shown_name()))
             .find_map(|info| info.size);
-        if let (Some(given), Some(stated)) = (self.asked.frames.size(), stated)
+        if let (Some(given), Some(stated)) = (self.asked.reading.size(), stated)
             && given != stated
         {
             let rows = counted(stated.rows(), "row");
@@ -581,7 +582,7 @@ impl Answering<'_> {
             self.warn(unused);
         }
         if channel.info.size.is_none() {
-            let given = self.asked.frames.size();
+            let given = self.asked.reading.size();
             return Err(damaged(&self.name, &unshaped(channel.values, given)));
         }
         // Force and contact exist without a threshold, too. There is no default: the meaning of values differs from
@@ -609,7 +610,7 @@ impl Answering<'_> {
         let processing = &pipeline.processing;
         let one = |number: u64| number..number + 1;
         let numbers = match choice {
-            Choice::All => vec![0..u64::MAX],
+            Choice::All => Vec::from([0..u64::MAX]),
             Choice::Number(number) => vec![one(*number)],
             Choice::Label(_) => channel.labelled.iter().copied().map(one).collect(),
             // Without tare and gain the listing has it already.
@@ -687,7 +688,7 @@ impl Answering<'_> {
                 let processed = pipeline.run(frame);
                 let processed =
                     processed.map_err(|error| self.refused(self.pipeline.explained(&error)))?;
-                self.give(channel, frame, processed, answered)?;
+                self.give(channel, frame, &processed, answered)?;
                 answered = true;
             }
             Ok(if frame.number + 1 >= end {
@@ -705,14 +706,14 @@ impl Answering<'_> {
         &self,
         channel: &Channel,
         frame: &Frame,
-        processed: Processed<'_>,
+        processed: &Processed<'_>,
         again: bool,
     ) -> Result<(), Failure> {
         let info = &channel.info;
         let answer = FrameAnswer {
             frame,
             channel: info.name.as_deref(),
-            processed,
+            processed: *processed,
         };
         if self.asked.csv {
             return self.write(answer.csv_line());
@@ -722,7 +723,7 @@ impl Answering<'_> {
         };
         let (pitch, without_pitch) = self.cell_size(info)?;
         let heat = self.asked.heat.then_some(processed.tared);
-        let titles = self.titles(info, frame, &processed, rule);
+        let titles = self.titles(info, frame, processed, rule);
         let mut lines = titles.clone();
         if !self.asked.json {
             lines.extend(without_pitch);
@@ -849,7 +850,9 @@ impl Answering<'_> {
             said = Some(written(path));
         }
         if self.asked.json {
-            said.iter().for_each(|said| self.cx.note(said));
+            if let Some(said) = said {
+                self.cx.note(&said);
+            }
             self.write(json::text(&NoiseJson::of(&found)) + "\n")?;
         } else {
             let said = said.map_or(String::new(), |said| said + "\n");

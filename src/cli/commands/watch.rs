@@ -238,10 +238,10 @@ fn recording(source: &FrameSource, request: &WatchRequest) -> Result<Option<Reco
     let created = source
         .refuse_as_target(path)
         .and_then(|()| Recording::create(path, *existing, &metadata));
-    created.map(Some).map_err(unrecorded)
+    created.map(Some).map_err(|error| unrecorded(&error))
 }
 
-fn unrecorded(error: RecorderError) -> Failure {
+fn unrecorded(error: &RecorderError) -> Failure {
     let hint = matches!(error, RecorderError::Exists { .. }).then_some("; --force replaces it");
     Failure::new(format!("{error}{}", hint.unwrap_or_default()))
 }
@@ -389,12 +389,11 @@ impl Watcher<'_> {
         {
             Taring::Done => return self.answer(&frame),
             Taring::LeftOut(error) if self.waiting.is_empty() => return Err(self.refused(error)),
-            Taring::LeftOut(_) => {}
             Taring::Again => {
                 let size = frame.size();
                 self.waiting.retain(|own| own.size() == size);
             }
-            Taring::Added | Taring::Made => {}
+            Taring::LeftOut(_) | Taring::Added | Taring::Made => {}
         }
         if let Some((_, wanted)) = self.pipeline.progress() {
             let fits = TareFrames::new(wanted).check_memory(frame.values().len());
@@ -453,11 +452,11 @@ impl Watcher<'_> {
         };
         self.recording = None;
         if self.lines.is_none() {
-            return Err(unrecorded(error));
+            return Err(unrecorded(&error));
         }
         self.say(format!("{error}; the answers go on"));
         self.may_give_up = false;
-        self.unrecorded = Some(unrecorded(error));
+        self.unrecorded = Some(unrecorded(&error));
         Ok(())
     }
 
@@ -600,7 +599,7 @@ impl Watcher<'_> {
         let Some(recording) = &self.recording else {
             return Ok(());
         };
-        let Some(recorded) = recording.finish().map_err(unrecorded)? else {
+        let Some(recorded) = recording.finish().map_err(|error| unrecorded(&error))? else {
             return Ok(());
         };
         if recorded.left_out > 0 {

@@ -200,10 +200,8 @@ impl MarkedFrames<'_, '_> {
     }
 
     fn finish(mut self) -> Result<(), Stop> {
-        if !self.bytes.is_empty() {
-            if self.start == Start::Marker || self.has_frames {
-                self.board.lose(1, &self.bytes, "ends inside a frame")?;
-            }
+        if !self.bytes.is_empty() && (self.start == Start::Marker || self.has_frames) {
+            self.board.lose(1, &self.bytes, "ends inside a frame")?;
         }
         self.board.finish()
     }

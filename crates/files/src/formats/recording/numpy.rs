@@ -545,7 +545,7 @@ mod tests {
                 RecordingEvent::Frame(frame) => times.push(frame.time),
                 RecordingEvent::Channel(info) => names.push(info.name.clone()),
                 RecordingEvent::Note(note) => notes.push(note.to_string()),
-                _ => {}
+                RecordingEvent::Damage { .. } => {}
             }
             ControlFlow::Continue(())
         });
