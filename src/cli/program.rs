@@ -67,13 +67,13 @@ pub(super) struct Program {
 #[derive(Debug, Args)]
 pub(super) struct Global {
     /// The library's folder
-    #[arg(long, global = true, value_name = "DIR", help_heading = "Library")]
+    #[arg(long, global = true, value_name = "DIR", help_heading = "Library", display_order = 900)]
     pub(super) library: Option<PathBuf>,
     /// Use this settings file instead of your own
-    #[arg(long, global = true, value_name = "FILE")]
+    #[arg(long, global = true, value_name = "FILE", display_order = 901)]
     pub(super) config: Option<PathBuf>,
     /// Use ASCII only, as if the locale were not UTF-8
-    #[arg(long, global = true)]
+    #[arg(long, global = true, display_order = 902)]
     pub(super) ascii: bool,
 }
 
