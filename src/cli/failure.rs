@@ -81,9 +81,10 @@ impl Failure {
 
     /// The lines for standard error. A closed pipe, as in `taxel batch | head -1`, is not an error.
     pub(crate) fn message(&self, charset: Charset) -> Option<String> {
-        let text = match self.has_lines {
-            true => charset.lines(&self.text),
-            false => charset.line(&self.text).into_owned(),
+        let text = if self.has_lines {
+            charset.lines(&self.text)
+        } else {
+            charset.line(&self.text).into_owned()
         };
         (self.status != 0 && !text.is_empty()).then(|| format!("error: {text}\n"))
     }

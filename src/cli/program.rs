@@ -67,7 +67,13 @@ pub(super) struct Program {
 #[derive(Debug, Args)]
 pub(super) struct Global {
     /// The library's folder
-    #[arg(long, global = true, value_name = "DIR", help_heading = "Library", display_order = 900)]
+    #[arg(
+        long,
+        global = true,
+        value_name = "DIR",
+        help_heading = "Library",
+        display_order = 900
+    )]
     pub(super) library: Option<PathBuf>,
     /// Use this settings file instead of your own
     #[arg(long, global = true, value_name = "FILE", display_order = 901)]
@@ -91,7 +97,7 @@ pub(super) enum Subcommands {
     #[command(subcommand)]
     Model(ModelCommand),
     #[command(alias = "recognize")]
-    Recognise(Recognise),
+    Recognise(Box<Recognise>),
     Frames(Box<Frames>),
     Watch(Box<Watch>),
     Library(LibraryCommand),

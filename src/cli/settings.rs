@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use taxel_core::frame::{FrameSize, Processing, Rule, RuleOrigin, SetRule};
-use taxel_core::parameter::{Parameter, ParameterError};
+use taxel_core::parameter::{Parameter, ParameterError, UnknownName};
 use taxel_core::quote::shortened_message;
 use taxel_core::sensor::Sensor;
 use taxel_files::acquire::AcquireOptions;
@@ -132,18 +132,39 @@ impl From<SensorSettings> for SensorTable {
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default, expecting = "a table")]
 pub(crate) struct SourceSettings {
-    #[serde(deserialize_with = "stream_format", serialize_with = "format_name")]
-    format: Option<&'static Format>,
+    format: StreamFormat,
     #[serde(deserialize_with = "whole::<_, _, 50, 20_000_000>")]
     baud: Option<u32>,
     rows: Option<u16>,
     columns: Option<u16>,
 }
 
+/// The format of a stream by its name; None for `auto`.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(try_from = "String", into = "&'static str")]
+struct StreamFormat(Option<&'static Format>);
+
+impl TryFrom<String> for StreamFormat {
+    type Error = UnknownName;
+
+    fn try_from(name: String) -> Result<Self, UnknownName> {
+        let is_auto = name == "auto";
+        let format = (!is_auto).then(|| Format::of_stream(&name)).transpose()?;
+        Ok(Self(format))
+    }
+}
+
+impl From<StreamFormat> for &'static str {
+    fn from(format: StreamFormat) -> Self {
+        let format = format.0.and_then(|format| format.stream);
+        format.unwrap_or("auto")
+    }
+}
+
 impl Default for SourceSettings {
     fn default() -> Self {
         Self {
-            format: None,
+            format: StreamFormat(None),
             baud: Some(AcquireOptions::BAUD),
             rows: None,
             columns: None,
@@ -392,7 +413,7 @@ impl Settings {
 
     /// Gives the settings for streams to what is asked of a source.
     pub(crate) fn apply(&self, options: &mut AcquireOptions) {
-        options.stream_format = self.source.format.or(options.stream_format);
+        options.stream_format = self.source.format.0.or(options.stream_format);
         options.baud = self.source.baud.or(options.baud);
         options.stream_size = FrameSize::of_sides(self.source.columns, self.source.rows);
     }
@@ -527,18 +548,6 @@ fn one_rule<'de, D: Deserializer<'de>>(from: D) -> Result<FrameSettings, D::Erro
     let own = FrameSettings::deserialize(from)?;
     own.checked_rule().map_err(D::Error::custom)?;
     Ok(own)
-}
-
-fn stream_format<'de, D: Deserializer<'de>>(from: D) -> Result<Option<&'static Format>, D::Error> {
-    match String::deserialize(from)?.as_str() {
-        "auto" => Ok(None),
-        name => Format::of_stream(name).map(Some).map_err(D::Error::custom),
-    }
-}
-
-#[expect(clippy::ref_option, reason = "serde passes it so")]
-fn format_name<S: Serializer>(format: &Option<&'static Format>, to: S) -> Result<S::Ok, S::Error> {
-    to.serialize_str(format.and_then(|format| format.stream).unwrap_or("auto"))
 }
 
 fn below<'de, D: Deserializer<'de>>(from: D) -> Result<Option<PathBuf>, D::Error> {

@@ -7,7 +7,7 @@ use std::iter;
 use clap::{Args, Subcommand};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
-use taxel_core::description::{RegionKind, regions};
+use taxel_core::description::{Region, RegionKind, regions};
 use taxel_core::quote::{as_argument, shortened_message};
 use taxel_core::sensor::Sensor;
 use taxel_files::formats::{Content, Name, StoredShape, json};
@@ -49,7 +49,9 @@ enum Act {
     Save(Save),
     Delete(Delete),
     Restore(Restore),
-    Path(Folder),
+    /// Print the library's folder
+    #[command(after_help = PATH_EXAMPLES)]
+    Path,
     Check(Check),
 }
 
@@ -61,7 +63,7 @@ impl LibraryCommand {
             Act::Save(command) => command.run(cx),
             Act::Delete(command) => command.run(cx),
             Act::Restore(command) => command.run(cx),
-            Act::Path(command) => command.run(cx),
+            Act::Path => path(cx),
             Act::Check(command) => command.run(cx),
         }
     }
@@ -120,7 +122,7 @@ fn line(library: &Library, entry: LibraryEntry) -> Option<Line> {
         Ok(loaded) => {
             let imprint = &loaded.shape.imprint;
             let regions = regions(imprint);
-            let kinds = regions.iter().map(|region| region.kind());
+            let kinds = regions.iter().map(Region::kind);
             let holes = kinds.filter(|kind| *kind == RegionKind::Hole).count();
             let name = loaded.written_name;
             let found = Found::Shape {
@@ -322,24 +324,17 @@ Examples:
   taxel library path
   ls \"$(taxel library path)\"";
 
-/// Print the library's folder
-#[derive(Debug, Args)]
-#[command(after_help = PATH_EXAMPLES)]
-struct Folder {}
-
-impl Folder {
-    /// Prints the path byte for byte, so that other programs find the folder, but escaped on a terminal.
-    fn run(self, cx: &Context) -> Result<(), Failure> {
-        let library = cx
-            .shelf
-            .library()
-            .map_err(|error| cx.shelf.refused(error))?;
-        let folder = library.folder();
-        if io::stdout().is_terminal() {
-            return cx.print(&format!("{}\n", cx.charset.line(&folder.to_string_lossy())));
-        }
-        cx.write(&[folder.as_os_str().as_encoded_bytes(), b"\n"].concat())
+/// Prints the path byte for byte, so that other programs find the folder, but escaped on a terminal.
+fn path(cx: &Context) -> Result<(), Failure> {
+    let library = cx
+        .shelf
+        .library()
+        .map_err(|error| cx.shelf.refused(error))?;
+    let folder = library.folder();
+    if io::stdout().is_terminal() {
+        return cx.print(&format!("{}\n", cx.charset.line(&folder.to_string_lossy())));
     }
+    cx.write(&[folder.as_os_str().as_encoded_bytes(), b"\n"].concat())
 }
 
 const CHECK_EXAMPLES: &str = r#"Reads every shape and lists broken ones, shapes whose file holds another name,
@@ -366,7 +361,8 @@ struct Check {
 
 #[derive(Serialize)]
 struct Finding {
-    finding: &'static str,
+    #[serde(rename = "finding")]
+    kind: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -389,13 +385,13 @@ impl Check {
             let name = Some(line.name);
             match line.found {
                 Found::Broken { error } => findings.push(Finding {
-                    finding: "broken",
+                    kind: "broken",
                     name,
                     path: None,
                     reason: error,
                 }),
                 Found::Shape { other_name, .. } => names.extend(other_name.map(|other| Finding {
-                    finding: "name",
+                    kind: "name",
                     name,
                     path: None,
                     reason: format!(
@@ -408,7 +404,7 @@ impl Check {
         let broken = findings.len();
         findings.extend(names);
         findings.extend(library.foreign_files()?.into_iter().map(|path| Finding {
-            finding: "other file",
+            kind: "other file",
             name: None,
             path: Some(path.display().to_string()),
             reason: "not a shape: its name is not NAME.json".to_owned(),
@@ -419,7 +415,7 @@ impl Check {
             for found in &findings {
                 let place = found.name.as_ref().or(found.path.as_ref());
                 let place = cx.charset.line(place.map_or("", String::as_str));
-                let (what, reason) = (found.finding, cx.charset.line(&found.reason));
+                let (what, reason) = (found.kind, cx.charset.line(&found.reason));
                 cx.print(&format!("{what}: {place}: {reason}\n"))?;
             }
         }

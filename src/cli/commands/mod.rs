@@ -2,6 +2,11 @@
 //! prints; answers that come one by one are written at once. Files that a command writes are complete or do not exist:
 //! they get their names last.
 
+#![allow(
+    clippy::doc_markdown,
+    reason = "the documentation of an argument is its help"
+)]
+
 pub(super) mod export;
 
 pub(super) mod figure;

@@ -132,7 +132,7 @@ impl Sweep {
         let poses = poses.map(PoseFile::finish).transpose().map(Option::flatten);
         if !result.complete() {
             poses?;
-            return Err(signals.failure().into());
+            return Err(signals.failure());
         }
         let write = |poses| write(&result, self.atlas.as_deref(), existing, poses, &signals);
         let done = poses.map_err(Failure::from).and_then(write);
@@ -198,7 +198,7 @@ fn write(
 ) -> Result<(), Failure> {
     let atlas = atlas.map(|file| write_atlas(file, result, existing));
     if !signals.goes_on() {
-        return Err(signals.failure().into());
+        return Err(signals.failure());
     }
     for file in [atlas.transpose()?, poses].into_iter().flatten() {
         file.persist()?;
