@@ -16,10 +16,10 @@ use crate::tui::app::page::{Flow, LinePrompt, Page, Slot, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::{Context, HelpLine, Keymap, help};
-use crate::tui::widget::rows::{Search, contains, marked, number};
+use crate::tui::widget::rows::{contains, marked};
 use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write::{self, broken};
+use crate::tui::widget::write::{self, around, broken};
 
 /// The columns of the keys.
 const KEYS: usize = 26;
@@ -28,7 +28,10 @@ const KEYS: usize = 26;
 pub struct Help {
     context: Context,
     top: usize,
-    search: Search,
+    wanted: String,
+    /// The entries that contain the wanted text, and the place of the shown one among them.
+    matches: Vec<usize>,
+    at: usize,
 }
 
 /// A line on the screen: a title, or keys with what they do, of which only the first line has the keys.
@@ -41,11 +44,12 @@ struct Line {
 
 impl Help {
     pub fn new(context: Context) -> Self {
-        let search = Search::default();
         Self {
             context,
             top: 0,
-            search,
+            wanted: String::new(),
+            matches: Vec::new(),
+            at: 0,
         }
     }
 
@@ -83,7 +87,7 @@ impl Help {
     }
 
     /// The entries that have the wanted text.
-    fn matches(&self, keymap: &Keymap, wanted: &str) -> Vec<usize> {
+    fn matching(&self, keymap: &Keymap, wanted: &str) -> Vec<usize> {
         let has = |line: &HelpLine| match line {
             HelpLine::Place(place) => contains(place.title(), wanted),
             HelpLine::Keys(keys, text) => contains(keys, wanted) || contains(text, wanted),
@@ -95,26 +99,31 @@ impl Help {
             .collect()
     }
 
-    /// Goes to the first match of a text, and returns its number and how many there are.
-    fn search(
-        &mut self,
-        wanted: &str,
-        keymap: &Keymap,
-        room: (u16, u16),
-    ) -> Option<(usize, usize)> {
+    /// Goes to the first match of a text from the first visible entry on, then from the start.
+    fn search(&mut self, wanted: &str, keymap: &Keymap, room: (u16, u16)) {
+        self.matches = self.matching(keymap, wanted);
+        wanted.clone_into(&mut self.wanted);
         let lines = self.lines(keymap, room.0);
-        let top = self.top(&lines, room.1);
-        let (from, matches) = (lines.get(top)?.entry, self.matches(keymap, wanted));
-        let entry = self.search.begin(wanted, &matches, from)?;
-        self.show(entry, keymap, room);
-        number(entry, &matches)
+        let top = lines.get(self.top(&lines, room.1));
+        let from = top.map_or(0, |line| line.entry);
+        let ahead = self.matches.iter().position(|&entry| entry >= from);
+        self.at = ahead.unwrap_or(0);
+        self.show_match(keymap, room);
     }
 
-    fn go_to_match(&mut self, by: i8, keymap: &Keymap, room: (u16, u16)) -> Option<()> {
-        let matches = self.matches(keymap, self.search.wanted());
-        let entry = self.search.go(self.search.entry()?, by, &matches)?;
-        self.show(entry, keymap, room);
-        Some(())
+    fn found(&self) -> Option<usize> {
+        self.matches.get(self.at).copied()
+    }
+
+    /// The number of the match in sight, and how many there are.
+    fn number(&self) -> Option<(usize, usize)> {
+        self.found().map(|_| (self.at + 1, self.matches.len()))
+    }
+
+    fn show_match(&mut self, keymap: &Keymap, room: (u16, u16)) {
+        if let Some(entry) = self.found() {
+            self.show(entry, keymap, room);
+        }
     }
 
     /// Makes an entry visible: if it is out of sight, scrolls so that a third of the lines is above it.
@@ -140,9 +149,13 @@ impl Page for Help {
             Message::ScrollScreen(by) => self.scroll(page.saturating_mul(by.into()), keymap, room),
             Message::ScrollTo(Endpoint::First) => self.top = 0,
             Message::ScrollTo(Endpoint::Last) => self.scroll(i16::MAX, keymap, room),
-            Message::Match(by) if self.go_to_match(by, keymap, room).is_none() => {
+            Message::Match(_) if self.matches.is_empty() => {
                 let search = keymap.label(Context::Help, &action::SEARCH);
                 refuse(app, format!("nothing to go to: {search} searches"));
+            }
+            Message::Match(by) => {
+                self.at = around(self.at, by, self.matches.len());
+                self.show_match(keymap, room);
             }
             Message::Search => {
                 return Flow::push(SearchDialog {
@@ -151,7 +164,7 @@ impl Page for Help {
                     found: None,
                 });
             }
-            Message::Cancel => self.search.end(),
+            Message::Cancel => self.matches.clear(),
             Message::Quit => return Flow::Close,
             _ => {}
         }
@@ -174,11 +187,12 @@ impl Page for Help {
         area: Rect,
     ) -> Option<Position> {
         let lines = self.lines(keymap, area.width);
-        let (top, wanted) = (self.top(&lines, area.height), self.search.wanted());
+        let (top, found) = (self.top(&lines, area.height), self.found());
+        let wanted = found.map_or("", |_| self.wanted.as_str());
         let mut cursor = None;
         for (index, line) in lines.iter().skip(top).enumerate() {
             let row = write::row(area, index);
-            let here = self.search.entry() == Some(line.entry) && row.height > 0;
+            let here = found == Some(line.entry) && row.height > 0;
             let is_first = here && cursor.is_none();
             cursor = cursor.or(here.then_some(row.as_position()));
             let mut pieces = marked(line.title, wanted, Role::Title);
@@ -200,11 +214,11 @@ impl Page for Help {
     }
 
     fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
-        self.search.entry().is_some() || !matches!(message, Message::Match(_))
+        !self.matches.is_empty() || !matches!(message, Message::Match(_))
     }
 
     fn cancels_itself(&self) -> bool {
-        self.search.entry().is_some()
+        !self.matches.is_empty()
     }
 
     fn remark(&self, keymap: &Keymap, body: Rect) -> Option<(String, Role)> {
@@ -221,11 +235,7 @@ impl Page for Help {
                 top + 1
             )),
         };
-        let matches = self.matches(keymap, self.search.wanted());
-        let found = self
-            .search
-            .entry()
-            .and_then(|entry| number(entry, &matches));
+        let found = self.number();
         let found = found.map(|(number, all)| format!("match {number} of {all}"));
         let text: Vec<String> = found.into_iter().chain(visible).collect();
         (!text.is_empty()).then(|| (text.join("; "), Role::Key))
@@ -249,7 +259,8 @@ impl LinePrompt for SearchDialog {
         let cancelled = matches!(message, Message::Cancel | Message::Quit);
         if !cancelled {
             self.field.take(message);
-            self.found = help.search(self.field.text(), app.keymap(), app.body_size());
+            help.search(self.field.text(), app.keymap(), app.body_size());
+            self.found = help.number();
         }
         if let Some(below) = app.top_mut::<Help>() {
             *below = help;

@@ -20,8 +20,6 @@ use crate::tui::widget::write::{self, narrow};
 const APART: u16 = 10;
 const LINES: u16 = 2;
 
-const MARKS: [(u32, char); 4] = [(1, '·'), (2, 'o'), (10, 'O'), (100, '@')];
-
 const LEGEND: &str = "· 1   o 2–9   O 10–99   @ 100+";
 
 #[derive(Clone, Debug)]
@@ -186,26 +184,22 @@ impl PlotField {
         points: impl IntoIterator<Item = (f64, f64)>,
         style: Style,
     ) {
-        let mut counts =
-            vec![0_u32; usize::from(self.field.width) * usize::from(self.field.height)];
-        let index = |at: Position| {
+        let width = usize::from(self.field.width);
+        let mut counts = vec![0_u32; width * usize::from(self.field.height)];
+        for at in points.into_iter().filter_map(|point| self.character(point)) {
             let (column, row) = (at.x - self.field.x, at.y - self.field.y);
-            usize::from(row) * usize::from(self.field.width) + usize::from(column)
-        };
-        for point in points {
-            if let Some(at) = self.character(point) {
-                counts[index(at)] += 1;
-            }
+            counts[usize::from(row) * width + usize::from(column)] += 1;
         }
         for (at, count) in self.field.positions().zip(counts) {
-            let marks = MARKS.iter().rev();
-            let mark = marks.copied().find(|(least, _)| count >= *least);
-            if let (Some((_, mark)), Some(cell)) = (mark, buffer.cell_mut(at)) {
-                let mark = if theme.ascii && mark == '·' {
-                    '.'
-                } else {
-                    mark
-                };
+            let mark = match count {
+                0 => continue,
+                1 if theme.ascii => '.',
+                1 => '·',
+                2..10 => 'o',
+                10..100 => 'O',
+                _ => '@',
+            };
+            if let Some(cell) = buffer.cell_mut(at) {
                 cell.set_char(mark).set_style(style);
             }
         }

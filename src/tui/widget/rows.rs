@@ -101,56 +101,6 @@ fn first(text: &str, wanted: &str) -> Option<(usize, usize)> {
     })
 }
 
-#[derive(Clone, Debug, Default)]
-pub struct Search {
-    wanted: String,
-    entry: usize,
-}
-
-impl Search {
-    /// Searches for a text from the entry `from` on, then from the start. Returns the entry of the first match; if
-    /// there is none, the search ends. `matches` are the indices of the matching entries, in ascending order, here
-    /// and below.
-    pub fn begin(&mut self, wanted: &str, matches: &[usize], from: usize) -> Option<usize> {
-        self.end();
-        let ahead = matches.iter().find(|&&entry| entry >= from);
-        self.entry = *ahead.or(matches.first())?;
-        wanted.clone_into(&mut self.wanted);
-        Some(self.entry)
-    }
-
-    pub fn end(&mut self) {
-        *self = Self::default();
-    }
-
-    pub fn wanted(&self) -> &str {
-        &self.wanted
-    }
-
-    pub fn entry(&self) -> Option<usize> {
-        (!self.wanted.is_empty()).then_some(self.entry)
-    }
-
-    /// Goes from an entry to the next match, or to the previous one if `by` is negative; after the last match comes
-    /// the first. Returns its entry; None if there is no match.
-    pub fn go(&mut self, from: usize, by: i8, matches: &[usize]) -> Option<usize> {
-        let next = if by > 0 {
-            let ahead = matches.iter().find(|&&entry| entry > from);
-            ahead.or(matches.first())
-        } else {
-            let back = matches.iter().rev().find(|&&entry| entry < from);
-            back.or(matches.last())
-        };
-        self.entry = *next?;
-        Some(self.entry)
-    }
-}
-
-pub fn number(entry: usize, matches: &[usize]) -> Option<(usize, usize)> {
-    let before = matches.binary_search(&entry).ok()?;
-    Some((before + 1, matches.len()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
