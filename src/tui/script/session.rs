@@ -13,7 +13,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use std::cell::{Ref, RefCell};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
@@ -38,26 +37,8 @@ use crate::tui::widget::write::narrow;
 #[derive(Debug)]
 pub struct Session {
     app: App,
-    screen: RefCell<DrawnScreen>,
-}
-
-#[derive(Debug)]
-struct DrawnScreen {
-    buffer: Buffer,
-    /// The position of the cursor; None if it is hidden.
-    cursor: Option<Position>,
-    /// Whether the state has changed since it was drawn.
-    is_stale: bool,
-}
-
-impl DrawnScreen {
-    /// Draws the state onto the screen, unless the screen is up to date.
-    fn draw(&mut self, app: &App) {
-        if std::mem::take(&mut self.is_stale) {
-            self.buffer.reset();
-            self.cursor = draw(app, &mut self.buffer);
-        }
-    }
+    /// Columns and rows.
+    size: (u16, u16),
 }
 
 impl Session {
@@ -66,16 +47,9 @@ impl Session {
     }
 
     pub fn of(mut app: App, world: Jobs, width: u16, height: u16) -> Self {
-        let screen = DrawnScreen {
-            buffer: Buffer::empty(Rect::new(0, 0, width, height)),
-            cursor: None,
-            is_stale: true,
-        };
         app.jobs = world;
-        let mut session = Self {
-            app,
-            screen: RefCell::new(screen),
-        };
+        let size = (width, height);
+        let mut session = Self { app, size };
         Jobs::remind(&mut session.app);
         session.send(Message::Resized(width, height));
         offer(&mut session.app);
@@ -96,7 +70,6 @@ impl Session {
     pub fn send(&mut self, message: Message) {
         // Effects on a real terminal are ignored.
         let _ = update(&mut self.app, message);
-        self.screen.get_mut().is_stale = true;
     }
 
     /// Applies an act like the answer of a job.
@@ -141,14 +114,15 @@ impl Session {
 
     /// Changes the size of the screen.
     pub fn resize(&mut self, width: u16, height: u16) {
-        let area = Rect::new(0, 0, width, height);
-        self.screen.get_mut().buffer.resize(area);
+        self.size = (width, height);
         self.send(Message::Resized(width, height));
     }
 
-    fn drawn(&self) -> Ref<'_, DrawnScreen> {
-        self.screen.borrow_mut().draw(&self.app);
-        self.screen.borrow()
+    /// Draws the screen; also returns the position of the cursor, None if it is hidden.
+    fn drawn(&self) -> (Buffer, Option<Position>) {
+        let mut buffer = Buffer::empty(Rect::new(0, 0, self.size.0, self.size.1));
+        let cursor = draw(&self.app, &mut buffer);
+        (buffer, cursor)
     }
 
     pub fn app(&self) -> &App {
@@ -156,13 +130,12 @@ impl Session {
     }
 
     pub fn size(&self) -> (u16, u16) {
-        let area = self.screen.borrow().buffer.area;
-        (area.width, area.height)
+        self.size
     }
 
     /// Returns the position of the cursor; None if it is hidden.
     pub fn cursor(&self) -> Option<Position> {
-        self.drawn().cursor
+        self.drawn().1
     }
 
     pub fn screen(&self) -> String {
@@ -175,11 +148,11 @@ impl Session {
     }
 
     pub fn svg(&self, title: &str) -> String {
-        svg(&self.drawn().buffer, *self.app.theme(), title)
+        svg(&self.drawn().0, *self.app.theme(), title)
     }
 
     fn rows(&self, add: impl Fn(&Cell, &str, &mut String)) -> String {
-        let buffer = &self.drawn().buffer;
+        let (buffer, _) = self.drawn();
         let width = usize::from(buffer.area.width).max(1);
         let mut rows = String::with_capacity(buffer.content.len());
         for row in buffer.content.chunks(width) {
@@ -272,13 +245,11 @@ impl TextStyle {
             Color::Rgb(red, green, blue) => [red, green, blue],
             _ => other,
         };
-        let (ink, paper) = (color(cell.fg, ink), color(cell.bg, paper));
+        let (mut ink, mut paper) = (color(cell.fg, ink), color(cell.bg, paper));
         let has = |modifier| cell.modifier.contains(modifier);
-        let (ink, paper) = if has(Modifier::REVERSED) {
-            (paper, ink)
-        } else {
-            (ink, paper)
-        };
+        if has(Modifier::REVERSED) {
+            (ink, paper) = (paper, ink);
+        }
         Self {
             ink,
             paper,
@@ -315,15 +286,9 @@ fn draw_run(
         }
         at += alike;
     }
-    let mut style = format!(" fill=\"{}\"", hex(look.ink));
-    for (wanted, attribute) in [
-        (look.bold, " font-weight=\"bold\""),
-        (look.dim, " opacity=\"0.6\""),
-    ] {
-        if wanted {
-            style += attribute;
-        }
-    }
+    let bold = if look.bold { " font-weight=\"bold\"" } else { "" };
+    let dim = if look.dim { " opacity=\"0.6\"" } else { "" };
+    let style = format!(" fill=\"{}\"{bold}{dim}", hex(look.ink));
     for (from, text) in pieces(symbols) {
         let length = write::width(&text);
         let (x, y, length) = (x + units(from), y + BASE, units(length));
@@ -385,10 +350,8 @@ fn rectangle(
 ) {
     let fill = hex(color);
     let share = match quarters {
-        1 => " opacity=\"0.25\"",
-        2 => " opacity=\"0.5\"",
-        3 => " opacity=\"0.75\"",
-        _ => "",
+        4 => String::new(),
+        quarters => format!(" opacity=\"{}\"", f64::from(quarters) / 4.0),
     };
     // Writing to a String cannot fail.
     let _ = writeln!(
