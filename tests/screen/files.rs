@@ -101,14 +101,6 @@ fn an_imprint_or_a_shape_is_not_watched_as_frames() {
 }
 
 #[test]
-fn names_of_recordings_are_completed() {
-    shows(
-        ":watch tests/scripts/touch.c<Tab>",
-        &[":watch tests/scripts/touch.csv"],
-    );
-}
-
-#[test]
 fn paths_are_completed() {
     let folder = folder();
     let place = folder.path().to_str().expect("a name in ASCII").to_owned();
@@ -123,14 +115,10 @@ fn paths_are_completed() {
 }
 
 #[test]
-fn the_prompt_offers_commands_and_remembers_lines_between_runs() {
+fn the_prompt_remembers_lines_between_runs() {
     let folder = folder();
     let world = || Jobs::new(Library::open(folder.path().to_owned()));
-    let mut first = started(world(), ":");
-    shows(&first, &["  copy", "copy descriptors, imprint"]);
-    then(&mut first, "fig", &["figure  KIND --side 3"]);
-    hides(&first, &["copy descriptors, imprint"]);
-    press(&mut first, "<C-u>figure hexagon --side 3<Enter>");
+    started(world(), ":figure hexagon --side 3<Enter>");
     let mut second = started(world(), ":");
     shows(&second, &["figure hexagon --side 3", "earlier"]);
     then(
@@ -160,20 +148,4 @@ fn forms_begin_with_the_values_that_were_accepted_last() {
         &["ellipse rx 4.00 ry 4.00"],
     );
     then(&mut session, "1", &["ellipse rx 4.00 ry 1.00"]);
-}
-
-#[test]
-fn ranges_begin_with_those_that_were_accepted_last() {
-    let mut session = session("fr<Enter>e<Down><Down><C-u>0:80:20<Enter>q");
-    // The angles suit any shape; the ranges of x0 and y0 are proposed anew.
-    press(&mut session, "lcross<Enter>e");
-    shows(&session, &["0:80:20", "Ctrl-D defaults"]);
-    press(&mut session, "<C-d>");
-    hides(&session, &["0:80:20"]);
-    shows(&session, &["0:359:1"]);
-    // A picture returns to its place, and a sensor becomes that of the paper.
-    then(&mut session, "<Esc>n:picture washer<Enter>", &["zoom 1.00"]);
-    then(&mut session, "3", &["at 3.00, 2.00"]);
-    then(&mut session, "<C-d>", &["at 2.00, 2.00"]);
-    then(&mut session, "<Esc>S20<C-d>", &["16 × 16"]);
 }

@@ -174,25 +174,6 @@ fn matrix_and_descriptors_are_swapped_only_if_one_is_visible() {
     assert_eq!(wide.app().shown(), &before);
 }
 
-/// The title has the sensor, the pitch if one is set, and the name.
-#[test]
-fn the_title_names_sensor_and_shape() {
-    let title = |screen: String| screen.lines().nth(1).unwrap_or_default().to_owned();
-    let at = |keys: &str| title(sized((80, 24), false, keys).screen());
-    assert_eq!(at(""), "16 × 16 · threshold 0.50");
-    let set = ":sensor --columns 32 --rows 9 --threshold 0.305 --pitch 2.5<Enter>";
-    assert_eq!(at(set), "32 × 9 · threshold 0.305 · pitch 2.5 mm");
-    let loaded = at("lwasher<Enter>");
-    assert_eq!(loaded, "16 × 16 · threshold 0.50 · washer");
-    let changed = at("lwasher<Enter><Space>");
-    assert_eq!(changed, "16 × 16 · threshold 0.50 · washer*");
-    // The title follows a form, and a full page covers it.
-    assert_eq!(at("S<Tab><Tab><C-u>0.3"), "16 × 16 · threshold 0.30");
-    assert!(!at("?").contains("threshold"));
-    let ascii = title(sized((80, 24), true, "").screen());
-    assert_eq!(ascii, "16 x 16, threshold 0.50");
-}
-
 /// If there is too little room for a question, what it is about is cut, never its answers.
 #[test]
 fn the_answers_to_a_question_are_visible_on_small_screens() {
@@ -226,48 +207,6 @@ fn the_answers_to_a_question_are_visible_on_small_screens() {
     }
 }
 
-#[test]
-fn the_comparison_scrolls_if_it_does_not_fit() {
-    let whole = sized((80, 24), false, "f<Enter>=");
-    hides(&whole, &["scroll", "↓"]);
-    shows(
-        &sized((80, 24), false, "f<Enter>=<Down>"),
-        &["all of it is visible"],
-    );
-    let mut low = sized((40, 12), false, "f<Enter>=");
-    shows(
-        &low,
-        &["arrows scroll", "only B  ↓", " 0 · · ·", "\n 5 · · ·"],
-    );
-    hides(&low, &["\n 7 "]);
-    then(
-        &mut low,
-        "<Down><Down>",
-        &["only B  ↑↓", "\n 2 · · ·", "\n 7 · · ·"],
-    );
-    then(
-        &mut low,
-        "<End>",
-        &["only B  ↑\n", "\n10 · · ·", "\n15 · · ·"],
-    );
-    then(&mut low, "<PageUp>", &["only B  ↓\n", "\n 0 · · ·"]);
-    // The descriptors scroll the same way, and a large sensor also scrolls sideways.
-    then(&mut low, "<Tab><Tab><Tab><End>", &["dir "]);
-    let mut wide = sized((40, 24), false, ":sensor --columns 64<Enter>f<Enter>=");
-    shows(&wide, &["only B  →", "   0    5    10"]);
-    then(&mut wide, "<3x:Right>", &["only B  ←→", "\n     5    10"]);
-    then(&mut wide, "<60x:Right>", &["only B  ←\n"]);
-}
-
-#[test]
-fn a_pitch_of_1_means_none() {
-    shows(
-        "S",
-        &["Pitch     1.000     above 0, up to 1000 mm", "1: not set"],
-    );
-    hides("f<Enter>", &["mm"]);
-}
-
 /// Lines, CG and CD share the large taxels with numbers of two digits.
 #[test]
 fn a_number_of_two_digits_is_never_shown_in_part() {
@@ -286,18 +225,4 @@ fn a_number_of_two_digits_is_never_shown_in_part() {
         }
     }
     shows("f<Enter>cc", &["one digit stands for tens"]);
-}
-
-/// Beside a large matrix the panel is narrow; the values leave room for most lengths in mm all the same.
-#[test]
-fn lengths_in_mm_are_shown_beside_a_large_matrix() {
-    let keys = ":sensor --columns 64 --rows 64 --pitch 2.5<Enter>f<Enter>".replace(' ', "<Space>");
-    let page = sized((80, 24), false, &keys);
-    shows(
-        &page,
-        &[
-            "NumX   416             1040 mm\n",
-            "Area   64              400 mm²\n",
-        ],
-    );
 }

@@ -37,13 +37,6 @@ fn the_sizes_in_a_proposed_name_are_those_of_the_present_figure() {
 }
 
 #[test]
-fn the_proposed_name_of_a_second_drawing_is_free() {
-    let mut session = session("<Space>s<Enter>n<Right><Space>s");
-    shows(&session, &["Save as: drawing 2"]);
-    then(&mut session, "<Enter>", &["saved as drawing 2"]);
-}
-
-#[test]
 fn a_shape_is_saved_and_loaded() {
     let mut session = session("f<Enter>smine");
     shows(&session, &["Save as: mine"]);
@@ -108,30 +101,6 @@ fn two_programs_do_not_overwrite_each_other_unnoticed() {
     // A file that is gone is not replaced.
     then(&mut second, "dshared<Enter>y", &["shared deleted"]);
     then(&mut first, "s<Enter>", &["saved as shared"]);
-}
-
-#[test]
-fn undo_also_restores_the_name() {
-    let mut session = session("<Space>saaa<Enter>n<Space><Right><Space>sbbb<Enter>");
-    then(
-        &mut session,
-        "laaa<Enter>lbbb<Enter>",
-        &["· bbb\n", "\nstored shape: p moves", "NA 2 in all"],
-    );
-    then(
-        &mut session,
-        "u",
-        &["· aaa\n", "\nstored shape: p moves", "NA 1 in all"],
-    );
-    then(&mut session, "s", &["Save as: aaa"]);
-    then(
-        &mut session,
-        "<Esc>U",
-        &["· bbb\n", "\nstored shape: p moves"],
-    );
-    // An empty matrix has nothing to save.
-    press(&mut session, "lwasher<Enter>nq");
-    assert!(session.app().ended());
 }
 
 #[test]
@@ -216,19 +185,6 @@ fn the_sensor_is_changed_and_cut_taxels_are_reported() {
         &mut session,
         "fr<3x:Tab>0<Tab>0<Enter>S5<Tab>5<Enter>",
         &["drawn by hand", "NA 15 in all"],
-    );
-}
-
-#[test]
-fn a_shape_of_another_sensor_is_loaded_if_it_fits() {
-    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
-    drop(session_on(folder.path(), "<Space>smiddle<Enter>"));
-    let mut session = session_on(folder.path(), "S32<Tab>32<Enter>lmiddle<Enter>");
-    shows(&session, &["middle loaded", "NA 1 in all"]);
-    then(
-        &mut session,
-        "S4<Tab>4<Enter>lmiddle<Enter>",
-        &["! middle is 16 × 16 and does not fit on 4 × 4 taxels"],
     );
 }
 

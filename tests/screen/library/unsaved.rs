@@ -104,19 +104,6 @@ fn restored_work_keeps_its_name() {
     );
 }
 
-/// A figure keeps the name that it was saved under, too; that of a shipped shape cannot be used again.
-#[test]
-fn a_restored_shape_is_proposed_under_a_name_that_can_be_used() {
-    for (keys, proposed) in [
-        ("f<Enter>sround<Enter><Right><Space>", "Save as: round"),
-        ("lsmile<Enter><Space>", "Save as: smile copy"),
-    ] {
-        let folder = tempfile::tempdir().expect("there is a folder for temporary files");
-        drop(session_on(folder.path(), keys));
-        shows(&session_on(folder.path(), "ys"), &[proposed]);
-    }
-}
-
 /// An undo of the restoring would lose the work without a question.
 #[test]
 fn restored_work_is_not_lost_by_undo() {
@@ -235,25 +222,6 @@ fn unsaved_work_that_cannot_go_to_the_trash_stays() {
         &again,
         &["There is unsaved work from last time: 1 taxel, less than a minute ago."],
     );
-}
-
-#[test]
-fn all_unsaved_work_that_is_thrown_away_can_be_restored() {
-    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
-    let first = session_on(folder.path(), "<Space>");
-    let second = session_on(folder.path(), "<Space><Right><Space>");
-    drop((first, second));
-    let mut later = session_on(folder.path(), "n");
-    then(
-        &mut later,
-        "n",
-        &["the unsaved work is in the trash as unsaved 2; :restore unsaved 2"],
-    );
-    for name in ["unsaved 2", "unsaved 1"] {
-        let keys = format!(":restore {name}<Enter>");
-        then(&mut later, &keys, &[&format!("{name} is back")]);
-    }
-    then(&mut later, "lunsaved 1<Enter>", &["unsaved 1 loaded"]);
 }
 
 /// The journal and the question before quitting agree on what is unsaved work.
