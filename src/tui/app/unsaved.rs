@@ -1,15 +1,12 @@
 //! Unsaved work: what the question before quitting warns of, and what the journal keeps. Both come from the same list,
 //! so nothing that is asked about is missing in the journal.
 
-use std::time::Duration;
-
 use taxel_core::source::Source;
 use taxel_files::formats::value::counted;
 use taxel_files::formats::{Name, StoredShape};
 use taxel_files::storage::{Library, LibraryError, Orphan, UNNAMED, shipped};
 
 use crate::tui::app::change::{inform, refuse, resume};
-
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::DocumentOrigin;
 use crate::tui::app::question::Question;
@@ -184,12 +181,12 @@ fn recover(app: &mut App) {
             origin.called(format!("{taxels} restored"))
         }
         name => {
-            let is_shipped = shipped::get(name).is_some();
-            let proposed = is_shipped.then(|| name_of_copy(name));
-            let proposed = proposed.unwrap_or_else(|| name.to_owned());
-            origin
-                .called(format!("{name} restored"))
-                .proposing(proposed)
+            let proposed = match shipped::get(name) {
+                Some(_) => name_of_copy(name),
+                None => name.to_owned(),
+            };
+            let origin = origin.called(format!("{name} restored"));
+            origin.proposing(proposed)
         }
     };
     resume(app, origin, document);
@@ -205,12 +202,11 @@ fn give_up(app: &mut App) {
     app.jobs.disk("Moving it to the trash", |library| {
         let thrown = throw_away(library, orphan);
         answer(|app| match thrown {
-            Ok(name) if app.jobs.orphans.is_empty() => inform(
-                app,
-                format!("the unsaved work is in the trash as {name}; :restore {name} brings it back"),
-            ),
             Ok(name) => {
-                inform(app, format!("{name} is in the trash"));
+                inform(
+                    app,
+                    format!("{name} is in the trash; :restore {name} brings it back"),
+                );
                 offer(app);
             }
             Err(reason) => {
@@ -243,17 +239,13 @@ fn described(orphan: &Orphan) -> String {
         (name, _) => Some(name.to_owned()),
     };
     let taxels = counted(shape.imprint.count(), "taxel");
-    let pieces = [called, Some(taxels), orphan.age().map(ago)];
-    pieces.into_iter().flatten().collect::<Vec<_>>().join(", ")
-}
-
-/// Within the first minute, seconds would say nothing useful.
-fn ago(time: Duration) -> String {
-    if time < Duration::from_secs(60) {
-        "less than a minute ago".to_owned()
-    } else {
-        format!("{} ago", about(time))
-    }
+    // Within the first minute, seconds would say nothing useful.
+    let age = orphan.age().map(|age| match age.as_secs() {
+        ..60 => "less than a minute ago".to_owned(),
+        _ => format!("{} ago", about(age)),
+    });
+    let pieces = [called, Some(taxels), age].into_iter().flatten();
+    pieces.collect::<Vec<_>>().join(", ")
 }
 
 /// Finishes changes and recordings and writes unsaved work at once, because the program is about to end. Returns lines

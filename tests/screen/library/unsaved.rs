@@ -30,7 +30,7 @@ fn unsaved_work_is_offered_back_once() {
     then(
         &mut later,
         "n",
-        &["unsaved 1 is in the trash. There is unsaved work from last time: ellipse"],
+        &["unsaved 1 is in the trash; :restore unsaved 1 brings it back. There is"],
     );
     then(
         &mut later,
