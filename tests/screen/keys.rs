@@ -200,10 +200,13 @@ fn a_shape_is_moved_and_turned() {
         ),
         ("f<Enter>g++<40x:Left>", "at -16.0, 4.00"),
         ("g", "nothing to move"),
-        ("<Space>>", "a drawing cannot be moved"),
+        (
+            "<Space>>",
+            "a drawing has no position; p places a saved one",
+        ),
         (
             "lkey<Enter>g",
-            "a stored imprint has no position: press p to place it as a picture",
+            "a drawing has no position; p places a saved one",
         ),
         ("lkey<Enter>c", "a stored imprint has none; p places it"),
         ("<Space>o", "a drawing has none; f places"),

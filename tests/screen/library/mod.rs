@@ -20,23 +20,6 @@ fn session_on(folder: &Path, keys: &str) -> Session {
 }
 
 #[test]
-fn the_sizes_in_a_proposed_name_are_those_of_the_present_figure() {
-    let mut session = session("f<Enter>s");
-    shows(&session, &["Save as: ellipse 4 x 4"]);
-    then(
-        &mut session,
-        "<Enter>f<Tab>5<Enter>s",
-        &["Save as: ellipse 5 x 4"],
-    );
-    // A name of the user's own stays.
-    then(
-        &mut session,
-        "mine<Enter>f<Tab>6<Enter>s",
-        &["Save as: mine"],
-    );
-}
-
-#[test]
 fn a_shape_is_saved_and_loaded() {
     let mut session = session("f<Enter>smine");
     shows(&session, &["Save as: mine"]);
