@@ -3,7 +3,7 @@
 use taxel::tui::jobs::Jobs;
 use taxel_files::storage::Library;
 
-use crate::session::{hides, press, session, shows, started, then};
+use crate::session::{press, session, shows, started, then};
 
 fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("there is a folder for temporary files")

@@ -5,7 +5,7 @@ use taxel::tui::app::state::Options;
 use taxel::tui::widget::theme::{ColorDepth, Palette, Theme};
 use taxel_core::sensor::Sensor;
 
-use crate::session::{hides, on, press, shows, sized, then, world};
+use crate::session::{hides, on, press, shows, sized, world};
 
 /// Keys that open the screens.
 const SCREENS: [&str; 22] = [
