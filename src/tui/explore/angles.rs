@@ -10,6 +10,7 @@
 //! Up and down choose the descriptor, left and right the angle, which the map shows too.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -22,13 +23,14 @@ use taxel_files::formats::value::fitting;
 use taxel_files::formats::{Plot, axis_ends};
 
 use crate::tui::app::message::Message;
-use crate::tui::app::page::Wheel;
+use crate::tui::app::page::{Wheel, find_mut};
 use crate::tui::app::state::App;
 use crate::tui::explore::ExploreMessage;
 use crate::tui::explore::map::turn;
 use crate::tui::explore::results::{
     Chosen, NOTHING_TO_DRAW, Results, Tab, choose_descriptor, described, foot, middle, named,
 };
+use crate::tui::jobs::{Slot, answer};
 use crate::tui::keys::keymap::Context;
 use crate::tui::widget::plot::{PlotField, draw_no_room};
 use crate::tui::widget::theme::{Role, Theme};
@@ -54,6 +56,30 @@ fn on(results: &mut Results, app: &mut App, message: &Message, area: Rect) {
         Message::Explore(ExploreMessage::Point(index, _)) => results.place[Axis::Angle] = index,
         _ => choose_descriptor(results, app, message, area),
     }
+}
+
+/// Finds the imprints of each angle at the zooms of the map, if they were not asked for yet.
+pub(super) fn find(app: &mut App, results: &mut Results) {
+    let zooms = results
+        .place
+        .with(Axis::X0, 0)
+        .with(Axis::Y0, 0)
+        .with(Axis::Angle, 0);
+    let asked = results.curve.as_ref().map(|(asked, _)| *asked);
+    if asked == Some(zooms) {
+        return;
+    }
+    results.curve = Some((zooms, None));
+    let findings = Arc::clone(&results.findings);
+    app.jobs.run(Slot::Angles, move |_| {
+        let curve = AngleCurve::of(&findings.sweep, zooms);
+        answer(move |app| {
+            let results = find_mut::<Results>(&mut app.pages).or(app.results.as_deref_mut());
+            if let Some(results) = results.filter(|own| Arc::ptr_eq(&own.findings, &findings)) {
+                results.curve = Some((zooms, Some(curve)));
+            }
+        })
+    });
 }
 
 fn spread(results: &Results) -> Vec<AngleSpread> {
@@ -209,13 +235,6 @@ struct AngleSpread {
     min: Option<f64>,
     mean: f64,
     max: Option<f64>,
-}
-
-pub(super) fn zooms_of(place: PoseIndex) -> PoseIndex {
-    place
-        .with(Axis::X0, 0)
-        .with(Axis::Y0, 0)
-        .with(Axis::Angle, 0)
 }
 
 impl AngleCurve {

@@ -25,11 +25,11 @@ use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Flow, Page, Slot, Wheel};
 use crate::tui::app::state::App;
-use crate::tui::explore::angles::{AngleCurve, zooms_of};
+use crate::tui::explore::angles::AngleCurve;
 use crate::tui::explore::export::{ExportDialog, FilterDialog};
 use crate::tui::explore::imprints::ImprintList;
 use crate::tui::explore::map::MapState;
-use crate::tui::explore::work::{find_angles, open_ranges};
+use crate::tui::explore::work::open_ranges;
 use crate::tui::explore::{
     ExploreMessage, ExploreTab, Findings, angles, histogram, imprints, map, name_of, scatter,
     statistics,
@@ -40,6 +40,8 @@ use crate::tui::widget::rows::moved;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, around, narrow};
 
+type Drawing = fn(&Results) -> Result<String, String>;
+
 /// A tab. Its functions get the area below the summary.
 pub(super) struct Tab {
     pub(super) title: &'static str,
@@ -47,7 +49,7 @@ pub(super) struct Tab {
     /// Whether it shows only what the filter keeps.
     pub(super) filtered: bool,
     pub(super) wheel: Wheel,
-    pub(super) drawing: Option<fn(&Results) -> Result<String, String>>,
+    pub(super) drawing: Option<Drawing>,
     /// None for the list of imprints, whose file has all imprints, and for tabs with a drawing.
     pub(super) table: Option<fn(&Results, Rect) -> String>,
     pub(super) draw: fn(&Results, &Theme, &mut Buffer, Rect) -> Option<Position>,
@@ -82,7 +84,7 @@ pub(crate) struct Results {
     pub(super) place: PoseIndex,
     pub(super) map: MapState,
     /// The zooms for which the imprints of each angle were asked for last, and the answer.
-    curve: Option<(PoseIndex, Option<AngleCurve>)>,
+    pub(super) curve: Option<(PoseIndex, Option<AngleCurve>)>,
 }
 
 /// A descriptor, and its value for each imprint.
@@ -199,32 +201,7 @@ impl Results {
     }
 
     pub(super) fn angles(&self) -> Option<&AngleCurve> {
-        let (zooms, curve) = self.curve.as_ref()?;
-        curve.as_ref().filter(|_| *zooms == zooms_of(self.place))
-    }
-
-    /// Returns the zooms at which the imprints of each angle are needed, unless they were asked for before.
-    pub(super) fn missing_angles(&mut self) -> Option<PoseIndex> {
-        let zooms = zooms_of(self.place);
-        let is_known = self
-            .curve
-            .as_ref()
-            .is_some_and(|(known, _)| *known == zooms);
-        if is_known || !self.is_open(ExploreTab::Angles) {
-            return None;
-        }
-        self.curve = Some((zooms, None));
-        Some(zooms)
-    }
-
-    pub(super) fn take_angles(&mut self, zooms: PoseIndex, curve: AngleCurve) {
-        if self
-            .curve
-            .as_ref()
-            .is_some_and(|(asked, _)| *asked == zooms)
-        {
-            self.curve = Some((zooms, Some(curve)));
-        }
+        self.curve.as_ref()?.1.as_ref()
     }
 
     pub(super) fn kept_of_all(&self) -> String {
@@ -423,7 +400,9 @@ impl Page for Results {
         if let Err(reason) = done {
             refuse(app, reason);
         }
-        find_angles(app, self);
+        if self.is_open(ExploreTab::Angles) {
+            angles::find(app, self);
+        }
         Flow::Stay
     }
 

@@ -22,10 +22,9 @@ use taxel_files::storage::{Existing, FileError, PoseFile, atlas_path, is_poses, 
 
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Flow, Page, Slot, find_mut};
+use crate::tui::app::page::{Flow, Page, Slot};
 use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, RunState};
-use crate::tui::explore::angles::AngleCurve;
 use crate::tui::explore::ranges::{RangesForm, about};
 use crate::tui::explore::results::Results;
 use crate::tui::explore::{ExploreMessage, Findings, name_of};
@@ -277,23 +276,6 @@ fn write_poses(
     };
     whole.persist()?;
     Ok(true)
-}
-
-/// Finds the imprints of each angle, if the open tab of results needs them.
-pub(super) fn find_angles(app: &mut App, results: &mut Results) {
-    let Some(zooms) = results.missing_angles() else {
-        return;
-    };
-    let findings = Arc::clone(&results.findings);
-    app.jobs.run(jobs::Slot::Angles, move |_| {
-        let curve = AngleCurve::of(&findings.sweep, zooms);
-        answer(move |app| {
-            let results = find_mut::<Results>(&mut app.pages).or(app.results.as_deref_mut());
-            if let Some(results) = results.filter(|own| Arc::ptr_eq(&own.findings, &findings)) {
-                results.take_angles(zooms, curve);
-            }
-        })
-    });
 }
 
 /// Work in progress.

@@ -54,7 +54,7 @@ impl Confusion {
         self.trained.model.shapes().len()
     }
 
-    fn example(&self) -> Option<Example> {
+    fn example(&self) -> Option<Example<'_>> {
         self.trained.examples.get(&self.trained.model, self.cell)
     }
 
@@ -128,8 +128,7 @@ impl Page for Confusion {
     /// Enter puts the imprint of the cell onto the matrix and closes the page.
     fn on(&mut self, app: &mut App, message: &Message) -> Flow {
         if *message == Message::Accept {
-            let example = self.example().and_then(|example| example.imprint);
-            if let Some(imprint) = example {
+            if let Some((Some(imprint), _)) = self.example() {
                 let (user, own) = (app.history.present().sensor, *self.trained.model.sensor());
                 let (sensor, imprint) = onto(&imprint, user, own);
                 let [touched, named] =
@@ -230,12 +229,12 @@ impl Confusion {
         );
         let foot = write::below(area, area.height.saturating_sub(FOOT));
         write::text(buffer, foot, theme, &text, Role::Text);
-        let Some(example) = self.example() else {
+        let Some((imprint, counts)) = self.example() else {
             return;
         };
-        let text = example.in_words(self.cell, |shape| trained.name(shape));
+        let text = in_words(counts, self.cell, |shape| trained.name(shape));
         write::text(buffer, write::row(foot, 1), theme, &text, Role::Text);
-        if let (Some(area), Some(imprint)) = (panes.picture, &example.imprint) {
+        if let (Some(area), Some(imprint)) = (panes.picture, &imprint) {
             draw_thumbnail(theme, imprint, buffer, area);
         }
     }
@@ -268,12 +267,6 @@ fn cell_text(theme: &Theme, count: u128, touches: u128, diagonal: bool) -> Strin
     }
 }
 
-struct Example {
-    /// The imprint, cut to its box; None for a touch that leaves nothing.
-    imprint: Option<Imprint>,
-    counts: Vec<ShapeCount>,
-}
-
 /// An example imprint for each cell of the confusion matrix: of the imprints that one shape leaves and that are named
 /// as another, the one that the first shape leaves in the most poses. All are found in advance: a model may have
 /// millions of imprints, and no key must wait for them.
@@ -298,29 +291,30 @@ impl Examples {
         Self { cells }
     }
 
-    fn get(&self, model: &Model, cell: (usize, usize)) -> Option<Example> {
+    /// Returns the imprint, cut to its box unless nothing is active, and the shapes that leave it.
+    fn get<'a>(&self, model: &'a Model, cell: (usize, usize)) -> Option<Example<'a>> {
         let &(_, key) = self.cells.get(&cell)?;
-        Some(Example {
-            imprint: model.keys().imprint(key),
-            counts: model.counts(key).to_vec(),
-        })
+        Some((model.keys().imprint(key), model.counts(key)))
     }
 }
 
-impl Example {
-    /// Says which shapes leave the imprint, and in how many poses. The two shapes of its cell come first: there may be
-    /// no room for all.
-    fn in_words<'a>(&self, cell: (usize, usize), name: impl Fn(usize) -> &'a str) -> String {
-        let mut counts: Vec<(usize, u64)> = (self.counts.iter())
-            .map(|own| (own.shape.into(), own.poses))
-            .collect();
-        counts.sort_by_key(|&(shape, _)| (shape != cell.0, shape != cell.1));
-        let leaves = counts
-            .into_iter()
-            .map(|(shape, poses)| format!("{} in {}", name(shape), counted(poses, "pose")));
-        let leaves = leaves.collect::<Vec<_>>().join(", ");
-        format!("an imprint left by {leaves}")
-    }
+type Example<'a> = (Option<Imprint>, &'a [ShapeCount]);
+
+/// Says which shapes leave an imprint, and in how many poses. The two shapes of its cell come first: there may be no
+/// room for all.
+fn in_words<'a>(
+    counts: &[ShapeCount],
+    cell: (usize, usize),
+    name: impl Fn(usize) -> &'a str,
+) -> String {
+    let counts = counts.iter().map(|own| (usize::from(own.shape), own.poses));
+    let mut counts: Vec<(usize, u64)> = counts.collect();
+    counts.sort_by_key(|&(shape, _)| (shape != cell.0, shape != cell.1));
+    let leaves = counts.into_iter();
+    let leaves =
+        leaves.map(|(shape, poses)| format!("{} in {}", name(shape), counted(poses, "pose")));
+    let leaves = leaves.collect::<Vec<_>>().join(", ");
+    format!("an imprint left by {leaves}")
 }
 
 /// Returns the cell beside the diagonal with the most touches, the first of several.
@@ -363,12 +357,12 @@ mod tests {
             let keys = keys.filter(|&key| model.most_frequent(key).0 == named);
             let most = keys.filter_map(|key| poses(model.counts(key)));
             let example = examples.get(&model, cell);
-            let found = example.as_ref().and_then(|own| poses(&own.counts));
+            let found = example.as_ref().and_then(|(_, counts)| poses(counts));
             assert_eq!(found, most.max(), "{cell:?}");
             let touches = evaluation.confusion.get(touched, named);
             assert_eq!(example.is_some(), touches > 0, "{cell:?}");
             let names = ["a", "b", "c"];
-            let text = example.map(|example| example.in_words(cell, |shape| names[shape]));
+            let text = example.map(|(_, counts)| in_words(counts, cell, |shape| names[shape]));
             let first = format!("an imprint left by {} in ", names[touched]);
             assert!(text.is_none_or(|text| text.starts_with(&first)), "{cell:?}");
         }
