@@ -65,14 +65,13 @@ Keys fr<Enter>:explore --angle 0:350:10<Enter>
 Expect /360,000 poses/
 Keys /
 Type \"na>=19 holes=0\"
-Keys <Enter>sm
-Keys a<Down>
+Keys <Enter>s<Down>
 Screen explore-imprints
 Keys /<C-u><Enter>2<4x:Down>
 Screen explore-statistics
 Keys 3
 Screen explore-histogram
-Keys 4)
+Keys 4>>>>>>>>>>
 Keys <30x:Right>
 Screen explore
 Keys ++++
