@@ -476,7 +476,7 @@ fn touches_are_kept_combined_and_forgotten() {
             format!("{same}a<Space><Space>a"),
             "this touch is already kept",
         ),
-        (format!("{hexagon}a<gt>"), "likely: octagon"),
+        (format!("{hexagon}a<gt><gt>"), "likely: octagon"),
         (format!("{hexagon}ax"), "the kept touches are forgotten"),
         (format!("{hexagon}ax"), "45.3 %"),
         ("a".to_owned(), "nothing is touched"),

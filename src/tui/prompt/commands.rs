@@ -84,7 +84,7 @@ enum Colon {
     },
     /// place a stored shape
     Picture { name: Vec<String> },
-    /// asks first if work would be lost
+    /// leave; asks first if work would be lost
     #[command(alias = "q")]
     Quit,
     /// quit without asking about unsaved work

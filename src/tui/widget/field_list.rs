@@ -221,6 +221,8 @@ fn draw_field<F: FormField>(
     (Position::new(column(cursor), row.y), column(width + 1))
 }
 
+const WIDE: u16 = 40;
+
 /// Draws what is allowed beside a field, and below it what is wrong with it or a remark; on a single line, the error
 /// or both.
 fn draw_remarks<F: FormField>(
@@ -241,10 +243,16 @@ fn draw_remarks<F: FormField>(
         (None, remark) => remark.map(|remark| (remark, Role::Quiet)),
     };
     let under = write::right_of(write::row(row, 1), row.x.saturating_add(2));
-    let beside = write::right_of(row, after);
+    // In a narrow form, what is allowed has no room beside the field.
+    let beside = match row.width {
+        ..WIDE if under.height > 0 => under,
+        _ => write::right_of(row, after),
+    };
     match second {
         Some((text, role)) if under.height > 0 => {
-            write::text(buffer, beside, theme, &range, Role::Quiet);
+            if beside != under {
+                write::text(buffer, beside, theme, &range, Role::Quiet);
+            }
             write::text(buffer, under, theme, text, role);
         }
         Some((error, Role::Error)) => {
