@@ -4,9 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use taxel_core::lock::locked;
-use taxel_files::acquire::{FrameRecorder, RecorderError};
+use taxel_files::acquire::{FrameRecorder, FrameSource, RecorderError};
 use taxel_files::formats::recording::RecordingMetadata;
 use taxel_files::storage::Existing;
+
+use crate::frames::WatchRequest;
 
 /// A file that frames are recorded in. The thread of the source adds them; another one may describe and finish it.
 /// Any of this waits for the disk, so nothing is called on the screen's thread.
@@ -25,6 +27,23 @@ pub struct RecordedFrames {
 }
 
 impl Recording {
+    /// Begins the recording that a request asks for, if it asks for one.
+    pub fn asked(
+        source: &FrameSource,
+        request: &WatchRequest,
+    ) -> Result<Option<Self>, RecorderError> {
+        let Some((path, existing)) = &request.write else {
+            return Ok(None);
+        };
+        source.refuse_as_target(path)?;
+        let metadata = RecordingMetadata {
+            source: source.name(),
+            rule: request.pipeline.rule(),
+            ..RecordingMetadata::default()
+        };
+        Self::create(path, *existing, &metadata).map(Some)
+    }
+
     /// Begins a recording. No file appears before the first frame.
     pub fn create(
         path: &Path,

@@ -31,8 +31,7 @@ use taxel_files::acquire::{
 };
 use taxel_files::formats::json;
 use taxel_files::formats::recording::{
-    ChannelChoice, ChannelInfo, FrameAnswer, ReadOptions, RecordingMetadata, StreamCounts,
-    no_channel,
+    ChannelChoice, ChannelInfo, FrameAnswer, StreamCounts, no_channel,
 };
 use taxel_files::formats::value::counted;
 use taxel_files::{ReadError, ReadErrorKind};
@@ -217,28 +216,12 @@ fn channels(
     request: &WatchRequest,
     up_to: Option<&str>,
 ) -> Result<(Vec<String>, bool), Failure> {
-    let options = ReadOptions {
-        size: request.options.size,
-        time_column: request.options.time_column.clone(),
-        label_column: request.options.label_column.clone(),
-        ..ReadOptions::default()
-    };
-    Ok(RecordingFile::open(path, options)?.channel_names(up_to))
+    let mut recording = RecordingFile::open(path, request.options.of_recording())?;
+    Ok(recording.channel_names(up_to))
 }
 
 fn recording(source: &FrameSource, request: &WatchRequest) -> Result<Option<Recording>, Failure> {
-    let Some((path, existing)) = &request.write else {
-        return Ok(None);
-    };
-    let metadata = RecordingMetadata {
-        source: source.name(),
-        rule: request.pipeline.rule(),
-        ..RecordingMetadata::default()
-    };
-    let created = source
-        .refuse_as_target(path)
-        .and_then(|()| Recording::create(path, *existing, &metadata));
-    created.map(Some).map_err(|error| unrecorded(&error))
+    Recording::asked(source, request).map_err(|error| unrecorded(&error))
 }
 
 fn unrecorded(error: &RecorderError) -> Failure {

@@ -6,7 +6,7 @@ use std::io::{self, IsTerminal};
 use std::ops::ControlFlow;
 use std::os::fd::AsFd;
 use std::os::unix::fs::MetadataExt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::JoinHandle;
@@ -93,14 +93,9 @@ impl Drop for Sources {
     }
 }
 
-/// Watches a source, as the work of this number, in place of the one before. All frames are recorded in a file if one
-/// is given.
-pub(super) fn watch(
-    app: &mut App,
-    number: u64,
-    request: Arc<WatchRequest>,
-    write: Option<(PathBuf, Existing)>,
-) {
+/// Watches a source, as the work of this number, in place of the one before. `records` says whether the recording that
+/// the request asks for is begun.
+pub(super) fn watch(app: &mut App, number: u64, request: Arc<WatchRequest>, records: bool) {
     stop(app);
     let feed = Feed::new(request);
     app.jobs.sources.watched = Some(Watched {
@@ -112,18 +107,11 @@ pub(super) fn watch(
     let own = Arc::clone(&feed);
     let begin = move || {
         let source = found(&own.request.source);
-        if let Some((path, existing)) = write {
-            let metadata = RecordingMetadata {
-                source: source.name(),
-                rule: own.request.pipeline.rule(),
-                ..RecordingMetadata::default()
-            };
-            let created = (source.refuse_as_target(&path))
-                .and_then(|()| Recording::create(&path, existing, &metadata));
-            match created {
-                Ok(recording) => drop(own.record(Arc::new(recording))),
-                Err(error) => own.fail_recording(error.to_string()),
-            }
+        let asked = records.then(|| Recording::asked(&source, &own.request));
+        match asked.transpose().map(Option::flatten) {
+            Ok(Some(recording)) => drop(own.record(Arc::new(recording))),
+            Ok(None) => {}
+            Err(error) => own.fail_recording(error.to_string()),
         }
         source
     };

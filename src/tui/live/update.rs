@@ -358,10 +358,9 @@ fn check_source(app: &mut App, source: &NamedSource) {
 fn watch(app: &mut App, request: &Arc<WatchRequest>) {
     app.works += 1;
     let mut page = Live::new(Arc::clone(request), app.works);
-    let write = request.write.clone();
-    let path = write.as_ref().map(|(path, _)| path.to_string_lossy());
+    let path = (request.write.as_ref()).map(|(path, _)| path.to_string_lossy());
     page.begin_recording(path.map(Into::into));
-    source::watch(app, page.number, Arc::clone(request), write);
+    source::watch(app, page.number, Arc::clone(request), true);
     // It has led to this page, and is not opened again by what is refused here.
     app.prompt = None;
     app.live = None;
@@ -396,7 +395,7 @@ fn watch_again(app: &mut App, page: &mut Live) {
 fn restart(app: &mut App, page: &mut Live) {
     app.works += 1;
     page.restart(app.works);
-    source::watch(app, page.number, Arc::clone(&page.request), None);
+    source::watch(app, page.number, Arc::clone(&page.request), false);
 }
 
 #[cfg(test)]

@@ -67,7 +67,7 @@ impl AcquireOptions {
     pub const BAUDS: RangeInclusive<u32> = 50..=20_000_000;
 
     /// The options for reading a recording.
-    pub(super) fn of_recording(&self) -> ReadOptions {
+    pub fn of_recording(&self) -> ReadOptions {
         ReadOptions {
             size: self.size,
             time_column: self.time_column.clone(),
