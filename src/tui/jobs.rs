@@ -772,18 +772,13 @@ impl UnsavedJournal {
 
 /// A temporary folder that only its owner can look into.
 fn temporary_folder() -> io::Result<TempDir> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix("taxel-");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o700));
+    let folder = tempfile::Builder::new().prefix("taxel-").tempdir();
     // The message names the folder that the user can change, not the temporary one.
-    builder.tempdir().map_err(|error| {
-        let place = std::env::temp_dir();
+    folder.map_err(|error| {
         let reason = system_reason(&error.kind().into());
-        let text = format!(
-            "{}: cannot make a folder for temporary files: {reason}",
-            place.display()
-        );
+        let place = std::env::temp_dir();
+        let place = place.display();
+        let text = format!("{place}: cannot make a folder for temporary files: {reason}");
         io::Error::new(error.kind(), text)
     })
 }

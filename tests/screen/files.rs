@@ -128,24 +128,3 @@ fn the_prompt_remembers_lines_between_runs() {
     );
     then(&mut second, "<Enter>", &["hexagon side 3.00"]);
 }
-
-#[test]
-fn forms_begin_with_the_values_that_were_accepted_last() {
-    let mut session = session("f<Tab>2.5<Enter>n");
-    // Cancelled values are not remembered, and each kind has its own.
-    press(&mut session, "f<Tab>7<Esc>fr<Tab>5<Enter>n");
-    then(&mut session, "f", &["rectangle length 5.00"]);
-    then(&mut session, "e", &["ellipse rx 2.50"]);
-    then(&mut session, "<Left>", &["octagon side"]);
-    // On a sensor of another size, a remembered position may be anywhere, so the values do not apply.
-    press(&mut session, "<Esc>:sensor --columns 20<Enter>");
-    then(&mut session, "fe", &["ellipse rx 4.00"]);
-    press(&mut session, "<Esc>u");
-    then(&mut session, "fe", &["ellipse rx 2.50", "Ctrl-D defaults"]);
-    then(
-        &mut session,
-        "<Tab><Tab>3<C-d>",
-        &["ellipse rx 4.00 ry 4.00"],
-    );
-    then(&mut session, "1", &["ellipse rx 4.00 ry 1.00"]);
-}

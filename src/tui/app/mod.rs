@@ -2,12 +2,12 @@
 //!
 //! ```text
 //! document   the document on the matrix, and its reading   history: all its states
-//! message    what a key means                          worker_event: what workers report
+//! message    what a key means
 //! page       the trait of pages                        question: the smallest of them
 //! state      App                                       update: all changes begin there
 //! change     changes of the document                   mouse: what clicks and drags do
-//! unsaved    what would be lost                        quit: the end, and the question before it
-//! menu  title  status      the lines above and below
+//! unsaved    what would be lost: the question before the end, the journal, the offer after a crash
+//! view       the layout                                menu, status: the lines above and below
 //! ```
 
 pub mod document;

@@ -1,4 +1,4 @@
-//! Every change of the state begins here: a message goes in, and perhaps an effect for the runtime comes out.
+//! Every change of the state begins here: with a message, or with the answer of a job.
 //!
 //! The top page receives the message, or the matrix if there is none. A notice stays until the next message from the
 //! user.

@@ -286,7 +286,11 @@ fn draw_run(
         }
         at += alike;
     }
-    let bold = if look.bold { " font-weight=\"bold\"" } else { "" };
+    let bold = if look.bold {
+        " font-weight=\"bold\""
+    } else {
+        ""
+    };
     let dim = if look.dim { " opacity=\"0.6\"" } else { "" };
     let style = format!(" fill=\"{}\"{bold}{dim}", hex(look.ink));
     for (from, text) in pieces(symbols) {

@@ -3,7 +3,7 @@
 //! ```text
 //! input       a thread that reads keys            ─┐
 //! unix        a thread that waits for signals      ├─ one channel ─ event_loop: updates, then draws what has changed
-//! runtime     messages of workers                 ─┘
+//! jobs        their answers                       ─┘
 //! session     enters and leaves the modes; a thread that writes frames
 //! screen      changed cells -> the bytes of a frame
 //! settings    environment and flags -> what this terminal is sent

@@ -101,49 +101,6 @@ fn deleting_asks_and_can_be_taken_back() {
 }
 
 #[test]
-fn a_picture_starts_in_its_place_and_follows_the_form() {
-    let mut session = session("<Space><Right><Space>spair<Enter>p");
-    shows(
-        &session,
-        &[
-            "Picture: pair",
-            "x0        8.00",
-            "y0        8.00",
-            "Zoom x    1.00",
-            "NA 2  NAE 2",
-        ],
-    );
-    then(
-        &mut session,
-        "2<Enter>",
-        &[
-            "picture of pair at 2.00, 8.00, 0°, zoom 1.00 × 1.00",
-            "NA 2 in all",
-        ],
-    );
-    then(
-        &mut session,
-        "g++<Down>",
-        &["picture of pair at 2.00, 9.00"],
-    );
-    then(
-        &mut session,
-        "z",
-        &[
-            "· pair*\n",
-            "\npicture of pair at 2.00, 9.00, 0°, zoom 2.00 × 2.00; reaches beyond the sensor",
-            "NA 0 in all",
-        ],
-    );
-    then(&mut session, "u>", &["picture of pair at 2.00, 8.00, 359°"]);
-    then(
-        &mut session,
-        "f<Enter>z",
-        &["a figure has no zoom; f changes its size"],
-    );
-}
-
-#[test]
 fn the_sensor_is_changed_and_cut_taxels_are_reported() {
     let mut session = session("<Space>S");
     shows(

@@ -85,25 +85,6 @@ fn all_unsaved_work_is_offered_one_after_the_other() {
     shows(&session_on(folder.path(), ""), &["last time (1 of 3): "]);
 }
 
-/// Work of a stored shape is proposed under its name again, even after a second crash.
-#[test]
-fn restored_work_keeps_its_name() {
-    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
-    drop(session_on(
-        folder.path(),
-        "<Space>smine<Enter><Right><Space>",
-    ));
-    drop(session_on(folder.path(), "y"));
-    let mut again = session_on(folder.path(), "");
-    shows(&again, &["unsaved work from last time: mine, 2 taxels"]);
-    then(&mut again, "ys", &["Save as: mine"]);
-    then(
-        &mut again,
-        "<Enter>",
-        &["\"mine\" already exists. Replace it?"],
-    );
-}
-
 /// An undo of the restoring would lose the work without a question.
 #[test]
 fn restored_work_is_not_lost_by_undo() {
@@ -222,24 +203,6 @@ fn unsaved_work_that_cannot_go_to_the_trash_stays() {
         &again,
         &["There is unsaved work from last time: 1 taxel, less than a minute ago."],
     );
-}
-
-/// The journal and the question before quitting agree on what is unsaved work.
-#[test]
-fn an_empty_matrix_is_never_unsaved_work() {
-    for keys in [
-        "f<Enter>sx<Enter>u",
-        "S<Tab>9<Enter>",
-        "<Space>sx<Enter><Space>",
-    ] {
-        let session = session(keys);
-        let app = session.app();
-        assert!(!app.unsaved() && app.unsaved_work().is_empty(), "{keys}");
-    }
-    // Still, it differs from the stored shape, and this is marked beside its name.
-    shows("f<Enter>sx<Enter>u", &["· x*\n"]);
-    let drawn = session("f<Enter>sx<Enter><Space>");
-    assert!(drawn.app().unsaved() && !drawn.app().unsaved_work().is_empty());
 }
 
 #[test]
