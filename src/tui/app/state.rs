@@ -8,7 +8,6 @@ use std::fmt;
 use ratatui::layout::Rect;
 use taxel_core::imprint::{Bounds, Imprint};
 use taxel_core::sensor::Sensor;
-use taxel_core::source::Source;
 use taxel_files::formats::StoredShape;
 
 use crate::tui::app::document::{Document, Reading};
@@ -62,16 +61,6 @@ pub enum MoveKind {
 pub(in crate::tui) enum Followed {
     Cursor,
     Region,
-}
-
-/// The state that decides what the window follows. It is compared before and after a message.
-#[derive(Clone, Debug)]
-pub(in crate::tui) struct Attention {
-    cursor: (u8, u8),
-    accompanied: bool,
-    /// A small move changes it, but may leave the same taxels active.
-    source: Option<Source>,
-    imprint: Imprint,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -312,32 +301,33 @@ impl App {
         }
     }
 
-    pub(in crate::tui) fn attention(&self) -> Attention {
-        let page = self.pane().map(Page::slot);
-        Attention {
-            cursor: self.cursor(),
-            accompanied: matches!(page, Some(Slot::Form | Slot::Panel)),
-            source: self.shown().source.clone(),
-            imprint: self.reading().imprint,
-        }
-    }
-
-    /// Makes the window follow the cursor if the cursor moved or its taxel was switched, and the described region if
-    /// the shape or the imprint changed otherwise, or if a page opened beside the matrix. Otherwise nothing changes.
-    pub(in crate::tui) fn follow(&mut self, before: &Attention) {
-        let now = self.attention();
-        let same_sensor = now.imprint.size() == before.imprint.size();
-        let mut changed = now.imprint.differing(&before.imprint);
-        changed.set(now.cursor.0, now.cursor.1, false);
+    /// Makes a change and reads the document again. Afterwards the window follows the cursor if the cursor moved or its
+    /// taxel was switched, and the described region if the shape or the imprint changed otherwise, or if a page opened
+    /// beside the matrix.
+    pub(crate) fn following(&mut self, change: impl FnOnce(&mut Self)) {
+        let state = |app: &Self| {
+            let page = app.pane().map(Page::slot);
+            let accompanied = matches!(page, Some(Slot::Form | Slot::Panel));
+            // A small move changes the source, but may leave the same taxels active.
+            let source = app.shown.source.clone();
+            (app.cursor(), accompanied, source, app.reading.imprint)
+        };
+        let (from, was_accompanied, old_source, old) = state(self);
+        change(self);
+        self.read();
+        let (to, accompanied, source, new) = state(self);
+        let same_sensor = new.size() == old.size();
+        let mut changed = new.differing(&old);
+        changed.set(to.0, to.1, false);
         let elsewhere = !same_sensor
             || !changed.is_empty()
-            || now.source != before.source
-            || now.accompanied && !before.accompanied;
-        if same_sensor && now.cursor != before.cursor {
+            || source != old_source
+            || accompanied && !was_accompanied;
+        if same_sensor && to != from {
             self.followed = Followed::Cursor;
         } else if elsewhere {
             self.followed = Followed::Region;
-        } else if now.imprint != before.imprint {
+        } else if new != old {
             self.followed = Followed::Cursor;
         }
     }

@@ -21,13 +21,13 @@ const MOST_SAID: usize = 300;
 
 /// Handles a message, and applies the answers of jobs that have come. Returns what the terminal is to do.
 pub fn update(app: &mut App, message: Message) -> Option<TerminalEffect> {
-    changing(app, |app| handle(app, message));
+    app.following(|app| handle(app, message));
     loop {
         live::update::write_changes(app);
         recognise::page::follow(app);
         app.jobs.settle(app.pages.len());
         if let Some(answer) = app.jobs.next_answer(app.pages.len()) {
-            changing(app, |app| on_answer(app, answer));
+            app.following(|app| on_answer(app, answer));
         } else {
             break;
         }
@@ -37,13 +37,6 @@ pub fn update(app: &mut App, message: Message) -> Option<TerminalEffect> {
     let works = app.unsaved_work();
     app.jobs.keep(works);
     app.terminal.take()
-}
-
-fn changing(app: &mut App, change: impl FnOnce(&mut App)) {
-    let before = app.attention();
-    change(app);
-    app.read();
-    app.follow(&before);
 }
 
 fn handle(app: &mut App, message: Message) {
