@@ -160,8 +160,9 @@ impl fmt::Debug for Jobs {
 impl Jobs {
     /// Keeps unsaved work in the library's journal, and offers what crashed programs left there.
     pub fn new(library: Library) -> Self {
-        let mut jobs = Self::for_script(library.clone());
-        jobs.orphans = Orphan::all(&library);
+        let orphans = Orphan::all(&library);
+        let mut jobs = Self::for_script(library);
+        jobs.orphans = orphans;
         jobs.remembers = true;
         jobs.keeps_unsaved = true;
         jobs
@@ -227,6 +228,10 @@ impl Jobs {
         Ok(Self::new(library).owning(folder))
     }
 
+    #[expect(
+        clippy::used_underscore_binding,
+        reason = "it is only kept until it is dropped"
+    )]
     fn owning(mut self, folder: TempDir) -> Self {
         self._scratch = Some(folder);
         self
@@ -575,6 +580,8 @@ impl Drop for Jobs {
     }
 }
 
+type Tell = Arc<dyn Fn(&mut App, SweepProgress) + Send + Sync>;
+
 /// What a job reports to, and from which it learns whether to go on.
 pub(crate) struct JobProgress {
     slot: Slot,
@@ -584,7 +591,7 @@ pub(crate) struct JobProgress {
     done: AtomicU64,
     begun: Instant,
     reported: Mutex<Instant>,
-    count: OnceLock<Arc<dyn Fn(&mut App, SweepProgress) + Send + Sync>>,
+    count: OnceLock<Tell>,
     post: Post,
 }
 

@@ -43,9 +43,10 @@ pub(crate) fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Posi
         let pieces = [&*source, beyond].map(|piece| (piece, Role::Text));
         write::line(buffer, panes.source, theme, pieces);
         let in_form = app.pane().map(Page::slot) == Some(Slot::Form);
-        let line = match in_form && panes.form_panel.is_none() {
-            true => described(app, seen),
-            false => taxel(app, seen),
+        let line = if in_form && panes.form_panel.is_none() {
+            described(app, seen)
+        } else {
+            taxel(app, seen)
         };
         write::text(buffer, panes.taxel, theme, &line, Role::Text);
     }
@@ -100,9 +101,10 @@ fn source(app: &App, panes: &Panes) -> String {
         }
     };
     // Over most pages these keys do something else.
-    match app.context().leads_to(Context::Matrix) {
-        true => format!("{name}{made}: {keys}"),
-        false => name + made,
+    if app.context().leads_to(Context::Matrix) {
+        format!("{name}{made}: {keys}")
+    } else {
+        name + made
     }
 }
 
@@ -132,10 +134,8 @@ fn taxel(app: &App, seen: &Reading) -> String {
     let wide = |side: u8| (side - 1).to_string().len();
     let (across, down) = (wide(seen.imprint.columns()), wide(seen.imprint.rows()));
     let covered = seen.coverage(column, row);
-    let state = match seen.imprint.get(column, row) {
-        true => "  active",
-        false => "inactive",
-    };
+    let is_active = seen.imprint.get(column, row);
+    let state = if is_active { "  active" } else { "inactive" };
     // The step of moving and zooming, if there is a shape to move.
     let held = if app.held.is_some() { "held, " } else { "" };
     let step = app.shown().source.as_ref();

@@ -235,10 +235,8 @@ impl Page for ListDialog {
         ];
         let end = write::line(buffer, area, theme, head);
         let (shown, all) = (self.rows().len(), self.entries().len());
-        let hint = match typed.is_empty() && all > 0 {
-            true => "; type to search",
-            false => "",
-        };
+        let is_whole = typed.is_empty() && all > 0;
+        let hint = if is_whole { "; type to search" } else { "" };
         let count = format!("  {shown} of {all}{hint}");
         write::text(
             buffer,
