@@ -5,8 +5,6 @@
 //! number. Its range depends on the sensor, which other flags may change, so a group collects the numbers, and they are
 //! checked when a sensor, figure or picture is made from them.
 
-use std::fmt::Debug;
-use std::marker::PhantomData;
 use std::ops::Deref;
 
 use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
@@ -20,46 +18,104 @@ use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::cli::failure::Failure;
 use crate::cli::settings::{Pitch, Settings};
 
-/// The flags of some parameters, under one heading.
-pub(crate) trait Group: Clone + Debug + Send + Sync + 'static {
-    const HEADING: &'static str;
-
-    fn parameters() -> Vec<Parameter>;
-
+/// A group of flags: the flags of some parameters, under one heading.
+struct Group {
+    heading: &'static str,
+    parameters: fn() -> Vec<Parameter>,
     /// What the help says about the value of a flag that is left out.
-    fn default(parameter: Parameter) -> String {
-        usual(parameter)
-    }
+    default: fn(Parameter) -> String,
 }
+
+/// The groups, by number: a command flattens `Flags<NUMBER>` into its arguments.
+const GROUPS: [Group; 8] = [
+    Group {
+        heading: "Figure",
+        parameters: || figure_parameters().collect(),
+        default: usual,
+    },
+    Group {
+        heading: "Figure",
+        parameters: || {
+            let is_axis = |own: Parameter| Axis::ALL.iter().any(|axis| axis.parameter() == own);
+            figure_parameters().filter(|own| !is_axis(*own)).collect()
+        },
+        default: usual,
+    },
+    Group {
+        heading: "Picture",
+        parameters: || PICTURE_PARAMETERS.to_vec(),
+        default: of_shape,
+    },
+    Group {
+        heading: "Sensor",
+        parameters: || SENSOR_PARAMETERS.to_vec(),
+        default: usual,
+    },
+    Group {
+        heading: "Sensor",
+        parameters: || MATRIX.to_vec(),
+        default: usual,
+    },
+    Group {
+        heading: "Sensor",
+        parameters: || SENSOR_PARAMETERS.to_vec(),
+        default: of_shape,
+    },
+    Group {
+        heading: "Sensor",
+        parameters: || MATRIX.to_vec(),
+        default: |own| match own {
+            Parameter::Threshold => usual(own),
+            _ => "; default large enough for all shapes, at least 16".to_owned(),
+        },
+    },
+    Group {
+        heading: "Sensor",
+        parameters: || vec![Parameter::Pitch],
+        default: usual,
+    },
+];
+
+const MATRIX: [Parameter; 3] = [Parameter::Columns, Parameter::Rows, Parameter::Threshold];
+
+/// All parameters of all kinds of figures.
+pub(crate) type FigureFlags = Flags<0>;
+
+/// The sizes and the thickness of figures, without their place, for sweeps.
+pub(crate) type SizeFlags = Flags<1>;
+
+pub(crate) type PictureFlags = Flags<2>;
+
+pub(crate) type SensorFlags = Flags<3>;
+
+/// A sensor whose pitch does not matter.
+pub(crate) type MatrixFlags = Flags<4>;
+
+/// The sensor of a stored shape.
+pub(crate) type OwnSensorFlags = Flags<5>;
+
+/// A sensor that is large enough for all shapes unless its sides are given.
+pub(crate) type FittingSensorFlags = Flags<6>;
+
+pub(crate) type PitchFlag = Flags<7>;
 
 /// The values that a group of flags gives.
-#[derive(Clone, Debug)]
-pub(crate) struct Flags<G> {
-    given: Given,
-    group: PhantomData<G>,
-}
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Flags<const GROUP: usize>(Given);
 
-impl<G> Default for Flags<G> {
-    fn default() -> Self {
-        Self {
-            given: Given::default(),
-            group: PhantomData,
-        }
-    }
-}
-
-impl<G> Deref for Flags<G> {
+impl<const GROUP: usize> Deref for Flags<GROUP> {
     type Target = Given;
 
     fn deref(&self) -> &Given {
-        &self.given
+        &self.0
     }
 }
 
-impl<G: Group> Args for Flags<G> {
+impl<const GROUP: usize> Args for Flags<GROUP> {
     fn augment_args(command: Command) -> Command {
-        let parameters = G::parameters().into_iter();
-        command.args(parameters.map(|own| arg(own, &G::default(own)).help_heading(G::HEADING)))
+        let group = &GROUPS[GROUP];
+        let flag = |own| arg(own, &(group.default)(own)).help_heading(group.heading);
+        command.args((group.parameters)().into_iter().map(flag))
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -67,151 +123,21 @@ impl<G: Group> Args for Flags<G> {
     }
 }
 
-impl<G: Group> FromArgMatches for Flags<G> {
+impl<const GROUP: usize> FromArgMatches for Flags<GROUP> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
-        let mut flags = Self::default();
-        flags.update_from_arg_matches(matches)?;
-        Ok(flags)
+        let own = (GROUPS[GROUP].parameters)().into_iter();
+        let given = own.filter_map(|parameter| {
+            let number = matches.try_get_one::<Number>(parameter.row().key);
+            Some((parameter, number.ok().flatten()?.clone()))
+        });
+        Ok(Self(Given(given.collect())))
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
-        self.given = Given::of(matches);
-        let own = G::parameters();
-        self.given
-            .0
-            .retain(|(parameter, _)| own.contains(parameter));
+        *self = Self::from_arg_matches(matches)?;
         Ok(())
     }
 }
-
-/// All parameters of all kinds of figures.
-pub(crate) type FigureFlags = Flags<OfFigure>;
-
-/// The sizes and the thickness of figures, without their place, for sweeps.
-pub(crate) type SizeFlags = Flags<OfSize>;
-
-pub(crate) type PictureFlags = Flags<OfPicture>;
-
-pub(crate) type SensorFlags = Flags<OfSensor>;
-
-/// A sensor whose pitch does not matter.
-pub(crate) type MatrixFlags = Flags<OfMatrix>;
-
-/// The sensor of a stored shape.
-pub(crate) type OwnSensorFlags = Flags<OfOwnSensor>;
-
-/// A sensor that is large enough for all shapes unless its sides are given.
-pub(crate) type FittingSensorFlags = Flags<OfFittingSensor>;
-
-pub(crate) type PitchFlag = Flags<OfPitch>;
-
-#[derive(Clone, Debug)]
-pub(crate) struct OfFigure;
-
-impl Group for OfFigure {
-    const HEADING: &'static str = "Figure";
-
-    fn parameters() -> Vec<Parameter> {
-        figure_parameters().collect()
-    }
-}
-
-#[derive(Clone, Debug)]
-pub(crate) struct OfSize;
-
-impl Group for OfSize {
-    const HEADING: &'static str = "Figure";
-
-    fn parameters() -> Vec<Parameter> {
-        let is_axis = |own: &Parameter| Axis::ALL.iter().any(|axis| axis.parameter() == *own);
-        figure_parameters().filter(|own| !is_axis(own)).collect()
-    }
-}
-
-#[derive(Clone, Debug)]
-pub(crate) struct OfPicture;
-
-impl Group for OfPicture {
-    const HEADING: &'static str = "Picture";
-
-    fn parameters() -> Vec<Parameter> {
-        PICTURE_PARAMETERS.to_vec()
-    }
-
-    fn default(parameter: Parameter) -> String {
-        of_shape(parameter)
-    }
-}
-
-#[derive(Clone, Debug)]
-pub(crate) struct OfSensor;
-
-impl Group for OfSensor {
-    const HEADING: &'static str = "Sensor";
-
-    fn parameters() -> Vec<Parameter> {
-        SENSOR_PARAMETERS.to_vec()
-    }
-}
-
-#[derive(Clone, Debug)]
-pub(crate) struct OfMatrix;
-
-impl Group for OfMatrix {
-    const HEADING: &'static str = "Sensor";
-
-    fn parameters() -> Vec<Parameter> {
-        let mut own = SENSOR_PARAMETERS.to_vec();
-        own.retain(|&parameter| parameter != Parameter::Pitch);
-        own
-    }
-}
-
-#[derive(Clone, Debug)]
-pub(crate) struct OfOwnSensor;
-
-impl Group for OfOwnSensor {
-    const HEADING: &'static str = "Sensor";
-
-    fn parameters() -> Vec<Parameter> {
-        SENSOR_PARAMETERS.to_vec()
-    }
-
-    fn default(parameter: Parameter) -> String {
-        of_shape(parameter)
-    }
-}
-
-#[derive(Clone, Debug)]
-pub(crate) struct OfFittingSensor;
-
-impl Group for OfFittingSensor {
-    const HEADING: &'static str = "Sensor";
-
-    fn parameters() -> Vec<Parameter> {
-        vec![Parameter::Columns, Parameter::Rows, Parameter::Threshold]
-    }
-
-    fn default(parameter: Parameter) -> String {
-        match parameter {
-            Parameter::Threshold => usual(parameter),
-            _ => FITTING.to_owned(),
-        }
-    }
-}
-
-#[derive(Clone, Debug)]
-pub(crate) struct OfPitch;
-
-impl Group for OfPitch {
-    const HEADING: &'static str = "Sensor";
-
-    fn parameters() -> Vec<Parameter> {
-        vec![Parameter::Pitch]
-    }
-}
-
-const FITTING: &str = "; default large enough for all shapes, at least 16";
 
 fn usual(parameter: Parameter) -> String {
     match parameter {
@@ -286,15 +212,6 @@ fn capitalised(text: &str) -> String {
 pub(crate) struct Given(Vec<(Parameter, Number)>);
 
 impl Given {
-    pub(crate) fn of(matches: &ArgMatches) -> Self {
-        let given = |parameter: Parameter| {
-            let number = matches.try_get_one::<Number>(parameter.row().key);
-            Some((parameter, number.ok().flatten()?.clone()))
-        };
-        let parameters = PARAMETERS.iter().map(|row| row.parameter);
-        Self(parameters.filter_map(given).collect())
-    }
-
     /// The first flag that is given, without its dashes.
     pub(crate) fn first(&self) -> Option<String> {
         self.0.first().map(|(parameter, _)| parameter.flag())
