@@ -65,6 +65,7 @@ const MOST_BYTES: u64 = 16 << 20;
 /// Drive the screen without a terminal
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag")]
 pub(crate) struct Script {
     /// Scripts to run, one after the other; '-' for standard input
     #[arg(value_name = "FILE")]

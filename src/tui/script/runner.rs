@@ -38,6 +38,10 @@ use crate::tui::widget::theme::{ColorDepth, Palette};
 use crate::tui::widget::write;
 
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a flag of the command"
+)]
 pub struct ScriptOptions {
     pub options: Options,
     /// Columns and rows of the screen, unless the script sets them.
@@ -96,6 +100,7 @@ impl From<String> for ScriptFailure {
 type Act = Box<dyn Fn(&mut Runner<'_>) -> Result<(), ScriptFailure>>;
 
 /// A command that needs the program to run.
+#[expect(clippy::unnecessary_wraps, reason = "as the rows of the table end")]
 fn act(
     act: impl Fn(&mut Runner<'_>) -> Result<(), ScriptFailure> + 'static,
 ) -> Result<Act, String> {
@@ -117,8 +122,11 @@ fn expect(look: impl Fn(&Session) -> Option<String> + 'static) -> Result<Act, St
     act(move |runner| look(&runner.session).map_or(Ok(()), |message| Err(message.into())))
 }
 
-/// The commands that need the program to run; each reads its argument.
-const COMMANDS: [(&str, fn(&str) -> Result<Act, String>); 19] = [
+/// Its name, and what reads its argument.
+type Command = (&'static str, fn(&str) -> Result<Act, String>);
+
+/// The commands that need the program to run.
+const COMMANDS: [Command; 19] = [
     ("Resize", |text| {
         let (columns, rows) = stated_size(text)?;
         drive(move |session| session.resize(columns, rows))
@@ -159,9 +167,10 @@ const COMMANDS: [(&str, fn(&str) -> Result<Act, String>); 19] = [
     ("Scroll", |text| {
         let (at, turns) = two(text, "a number")?;
         let (at, turns) = (position(at)?, whole(turns, -1000, 1000_i16)?);
-        let kind = match turns < 0 {
-            true => MouseKind::ScrollUp,
-            false => MouseKind::ScrollDown,
+        let kind = if turns < 0 {
+            MouseKind::ScrollUp
+        } else {
+            MouseKind::ScrollDown
         };
         drive(move |session| (0..turns.unsigned_abs()).for_each(|_| mouse(session, kind, at)))
     }),
@@ -268,9 +277,9 @@ const COMMANDS: [(&str, fn(&str) -> Result<Act, String>); 19] = [
     }),
     ("Quit", |text| {
         alone("Quit", text)?;
-        Ok(Box::new(|runner| match runner.session.app().ended() {
-            true => Ok(()),
-            false => Err("the program has not ended".to_owned().into()),
+        Ok(Box::new(|runner| {
+            let has_ended = runner.session.app().ended().then_some(());
+            has_ended.ok_or_else(|| "the program has not ended".to_owned().into())
         }))
     }),
 ];
@@ -380,10 +389,10 @@ impl Start {
             }
             None => own,
         };
-        Ok(match self.options.is_confined {
-            true => world.confined_to(self.options.folder.clone()),
-            false => world,
-        })
+        if self.options.is_confined {
+            return Ok(world.confined_to(self.options.folder.clone()));
+        }
+        Ok(world)
     }
 }
 
@@ -470,10 +479,10 @@ struct Runner<'a> {
 
 impl Runner<'_> {
     fn goes_on(&self) -> Result<(), ScriptFailure> {
-        match self.session.app().ended() {
-            true => Err(ScriptFailure::new(3, "the program had already ended")),
-            false => Ok(()),
+        if self.session.app().ended() {
+            return Err(ScriptFailure::new(3, "the program had already ended"));
         }
+        Ok(())
     }
 
     fn press(&mut self, keys: &[Key]) -> Result<(), ScriptFailure> {
@@ -625,7 +634,11 @@ fn file_name(name: &str, what: &str) -> Result<String, String> {
     }
 }
 
-fn whole<T: FromStr + PartialOrd + Display>(text: &str, least: T, most: T) -> Result<T, String> {
+fn whole<T: Copy + FromStr + PartialOrd + Display>(
+    text: &str,
+    least: T,
+    most: T,
+) -> Result<T, String> {
     let number = text.parse().ok();
     let number = number.filter(|number| (&least..=&most).contains(&number));
     number.ok_or_else(|| expected(&format!("a whole number from {least} to {most}"), text))

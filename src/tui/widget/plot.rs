@@ -228,9 +228,6 @@ const BITS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x8
 
 pub type DotPosition = (f64, f64);
 
-/// The most dots of a line; lines hardly reach beyond the field, which has a few hundred.
-const LONGEST: f64 = 10_000.0;
-
 #[derive(Clone, Debug)]
 pub struct DotCanvas {
     columns: u16,
@@ -284,8 +281,11 @@ impl DotCanvas {
         reason = "no longer than the field"
     )]
     pub fn dashed(&mut self, from: DotPosition, to: DotPosition, shown: impl Fn(u32) -> bool) {
+        let Some((from, to)) = clipped(from, to, self.size()) else {
+            return;
+        };
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-        let steps = dx.abs().max(dy.abs()).ceil().clamp(1.0, LONGEST) as u32;
+        let steps = dx.abs().max(dy.abs()).ceil().max(1.0) as u32;
         for step in (0..=steps).filter(|&step| shown(step)) {
             let share = f64::from(step) / f64::from(steps);
             self.set((from.0 + dx * share, from.1 + dy * share));
@@ -298,6 +298,36 @@ impl DotCanvas {
         all.filter(|(_, dots)| **dots != 0)
             .map(move |(index, &dots)| (narrow(index % columns), narrow(index / columns), dots))
     }
+}
+
+fn clipped(
+    from: DotPosition,
+    to: DotPosition,
+    (width, height): DotPosition,
+) -> Option<(DotPosition, DotPosition)> {
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let (mut start, mut end) = (0.0_f64, 1.0_f64);
+    // For each border: how fast the line leaves through it, and how far inside it starts.
+    for (speed, inside) in [
+        (-dx, from.0),
+        (dx, width - from.0),
+        (-dy, from.1),
+        (dy, height - from.1),
+    ] {
+        if speed == 0.0 && inside >= 0.0 {
+            continue;
+        }
+        let at = inside / speed;
+        if speed < 0.0 {
+            start = start.max(at);
+        } else if speed > 0.0 {
+            end = end.min(at);
+        } else {
+            return None;
+        }
+    }
+    let at = |share: f64| (from.0 + dx * share, from.1 + dy * share);
+    (start <= end).then(|| (at(start), at(end)))
 }
 
 pub fn glyph(theme: &Theme, dots: u8) -> char {
@@ -454,7 +484,7 @@ mod tests {
 
     #[test]
     fn dots_outside_or_at_nan_are_not_set() {
-        let beyond = drawn(false, (-100.0, 0.5), (100.0, 0.5));
+        let beyond = drawn(false, (-1e9, 0.5), (1e9, 0.5));
         assert_eq!(beyond, "⠉⠉⠉\n   ", "the visible part of a long line");
         for far in [f64::NAN, f64::INFINITY, -1e9] {
             assert_eq!(drawn(false, (far, far), (far, 1.0)).trim(), "", "{far}");
