@@ -116,6 +116,7 @@ impl Binding {
         self.actions.iter().any(|action| action.message == *message)
     }
 
+    #[must_use]
     pub fn without(&self, others: &[Key]) -> Self {
         let keys = self.keys.iter().filter(|(key, _)| !others.contains(key));
         Self {
@@ -126,7 +127,7 @@ impl Binding {
 
     pub fn labels(&self) -> String {
         let mut labels = Vec::new();
-        for (key, _) in self.keys.iter() {
+        for (key, _) in &self.keys {
             let label = self.all_arrows(*key).map_or(key.label(), str::to_owned);
             if !labels.contains(&label) {
                 labels.push(label);

@@ -18,7 +18,7 @@ pub enum LiveMessage {
     /// end.
     Again,
     Watch(Arc<WatchRequest>),
-    Source(NamedSource),
+    Source(Box<NamedSource>),
     Tare,
     NoTare,
     Threshold(i8),

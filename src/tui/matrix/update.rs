@@ -322,12 +322,11 @@ fn change_step(app: &mut App, direction: i8) {
     }
     let now = STEPS.iter().position(|&step| step == app.step);
     let next = now.and_then(|now| now.checked_add_signed(direction.into()));
-    match next.and_then(|next| STEPS.get(next)) {
-        Some(&step) => app.step = step,
-        None => {
-            let end = ["smallest", "largest"][usize::from(direction > 0)];
-            refuse(app, format!("{} is the {end} step", app.step));
-        }
+    if let Some(&step) = next.and_then(|next| STEPS.get(next)) {
+        app.step = step;
+    } else {
+        let end = ["smallest", "largest"][usize::from(direction > 0)];
+        refuse(app, format!("{} is the {end} step", app.step));
     }
 }
 

@@ -18,7 +18,7 @@ use clap::{CommandFactory, FromArgMatches, Parser};
 use taxel_core::figure::FigureKind;
 use taxel_core::frame::{FrameSize, MAX_FRAME_SIDE, Rule};
 use taxel_core::parameter::number;
-use taxel_core::pose::{Anchor, PoseGrid, default_ranges};
+use taxel_core::pose::{Anchor, GivenRanges, PoseGrid, default_ranges};
 use taxel_core::source::Source;
 use taxel_files::formats::Name;
 use taxel_files::storage::ModelChoice;
@@ -42,6 +42,7 @@ use crate::tui::recognise::RecogniseMessage;
     disable_help_flag = true,
     disable_help_subcommand = true
 )]
+#[expect(clippy::large_enum_variant, reason = "there is one at a time")]
 enum Colon {
     /// the threshold, in the sensor's unit
     AtLeast {
@@ -236,7 +237,7 @@ impl Colon {
             Self::Delete { name } => shape(Purpose::Delete, &name, Message::Delete)?,
             Self::Explore { ranges, anchor } => {
                 let RangeFlags(ranges) = ranges;
-                if anchor.is_none() && ranges == Default::default() {
+                if anchor.is_none() && ranges == GivenRanges::default() {
                     return Ok(Message::Explore(ExploreMessage::Open));
                 }
                 let source = explored(app).ok_or_else(|| app.nothing_to_explore())?;
@@ -264,7 +265,7 @@ impl Colon {
             Self::Recognise { model } => Message::Recognise(if model.is_empty() {
                 RecogniseMessage::Open
             } else {
-                RecogniseMessage::Choose(ModelChoice::from_text(&model.join(" ")))
+                RecogniseMessage::Choose(ModelChoice::from_text(model.join(" ")))
             }),
             Self::Restore { name } => {
                 let name = (!name.is_empty()).then(|| name_of(&name)).transpose()?;
@@ -287,7 +288,7 @@ impl Colon {
             Self::Size { size } => Message::Live(LiveMessage::Size(size)),
             Self::Turn { degrees } => Message::Turn(degrees),
             Self::Watch { source } if source.is_unnamed() => Message::Live(LiveMessage::Open),
-            Self::Watch { source } => Message::Live(LiveMessage::Source(source)),
+            Self::Watch { source } => Message::Live(LiveMessage::Source(Box::new(source))),
             Self::Write { file } => Message::WriteFile(file.join(" ")),
         })
     }

@@ -82,7 +82,8 @@ impl Session {
     pub fn watch(&mut self, name: &str) -> Result<(), String> {
         let number = |app: &App| last_page(app).map(|page| page.number);
         let before = number(&self.app);
-        self.send(Message::Live(LiveMessage::Source(NamedSource::new(name))));
+        let source = Box::new(NamedSource::new(name));
+        self.send(Message::Live(LiveMessage::Source(source)));
         if number(&self.app) != before {
             return Ok(());
         }

@@ -285,9 +285,8 @@ fn act(session: &mut Session, byte: u8, bytes: &mut Bytes<'_>) {
         0xf0..0xf2 => session.send(Message::Redraw),
         0xf2..0xf4 => {
             let recording = folder().join(FILES[0].0).display().to_string();
-            session.send(Message::Live(LiveMessage::Source(NamedSource::new(
-                recording,
-            ))));
+            let source = Box::new(NamedSource::new(recording));
+            session.send(Message::Live(LiveMessage::Source(source)));
         }
         0xf4..0xf8 => {
             let _ = session.frames((byte - 0xf3).into());
