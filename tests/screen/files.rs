@@ -118,7 +118,7 @@ fn paths_are_completed() {
 fn the_prompt_remembers_lines_between_runs() {
     let folder = folder();
     let world = || Jobs::new(Library::open(folder.path().to_owned()));
-    started(world(), ":figure hexagon --side 3<Enter>");
+    let _first = started(world(), ":figure hexagon --side 3<Enter>");
     let mut second = started(world(), ":");
     shows(&second, &["figure hexagon --side 3", "earlier"]);
     then(

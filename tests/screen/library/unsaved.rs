@@ -107,12 +107,16 @@ fn restored_work_is_not_lost_by_undo() {
 fn offers(library: &Path) -> String {
     let mut later = session_on(library, "");
     let mut said = String::new();
-    while later.screen().contains("unsaved work from last time") {
-        said += &later.screen();
+    loop {
+        // The lines break anywhere.
+        let screen = later.screen();
+        let words = screen.split_whitespace().collect::<Vec<_>>().join(" ");
+        if !words.contains("unsaved work from last time") {
+            return said;
+        }
+        said += &words;
         press(&mut later, "n");
     }
-    // The lines break anywhere.
-    said.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// The work that the question before quitting warns of is also kept if the program dies without a question.
@@ -128,7 +132,8 @@ fn work_that_was_left_for_something_else_is_kept() {
     ] {
         let folder = tempfile::tempdir().expect("there is a folder for temporary files");
         drop(session_on(folder.path(), &format!("{drawn}{left}")));
-        assert!(offers(folder.path()).contains(": 3 taxels, "), "{left}");
+        let said = offers(folder.path());
+        assert!(said.contains(": 3 taxels, "), "{left}: {said}");
     }
 }
 
