@@ -15,7 +15,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::index::wide;
 use taxel_core::progress::ToTheEnd;
 use taxel_core::quote::did_you_mean;
-use taxel_core::recognition::{Answer, AnswerState, Evidence, Model, Noise, NoiseError};
+use taxel_core::recognition::{AnswerState, Evidence, Model, Noise, NoiseError};
 use taxel_files::ReadError;
 use taxel_files::formats::file::without_mark;
 use taxel_files::formats::job::{FrameRows, RuleRecord};
@@ -32,7 +32,7 @@ use crate::cli::failure::{Failure, Named};
 use crate::cli::input::content::Input;
 use crate::cli::input::lines::{self, MAX_LINE};
 use crate::cli::input::shapes::{Located, Shelf};
-use crate::cli::output::answer::{AnswerJson, AnswerText, PoseReport};
+use crate::cli::output::answer::{PoseReport, Recognition};
 use crate::cli::output::charset::Charset;
 
 const EXAMPLES: &str = r#"Reads an imprint in any format that 'taxel describe' reads, or lines of JSON:
@@ -143,7 +143,8 @@ impl FoundNamer {
             noise: self.1,
             reject: None,
             top: None,
-            pose: None,
+            asks_pose: false,
+            pitch_mm: None,
         })
     }
 }
@@ -157,57 +158,50 @@ pub(crate) struct Namer {
     reject: Option<f64>,
     /// The number of shapes of the ranking that are shown; None for eight in words and all in JSON.
     top: Option<usize>,
-    /// Whether the pose is told, with the pitch in mm, if that is known.
-    pose: Option<Option<f64>>,
+    asks_pose: bool,
+    /// The pitch for poses, if it is known.
+    pitch_mm: Option<f64>,
 }
 
 impl Namer {
-    fn evidence<'a>(&'a self, touches: &'a [Imprint]) -> Evidence<'a> {
+    fn answer(&self, touches: &[Imprint]) -> Recognition<'_> {
         let mut evidence = Evidence::of(touches).under(self.noise.as_ref());
         evidence.reject_below = self.reject;
-        evidence
-    }
-
-    fn answer(&self, touches: &[Imprint]) -> Answer {
-        self.model.recognise(self.evidence(touches))
-    }
-
-    fn json<'a>(
-        &'a self,
-        touches: &[Imprint],
-        answer: &'a Answer,
-        copied: &'a [Copied],
-        pose: Option<PoseReport>,
-    ) -> AnswerJson<'a> {
-        let copied = copied.iter().map(|(key, value)| (*key, &**value));
-        AnswerJson {
+        Recognition {
             model: &self.model,
-            answer,
+            answer: self.model.recognise(evidence),
             noise: self.noise,
-            nearest: self.model.nearest_of(self.evidence(touches)),
+            nearest: self.model.nearest_of(evidence),
             top: self.top,
-            asks_pose: self.pose.is_some(),
-            pose,
-            copied: copied.collect(),
+            asks_pose: self.asks_pose,
+            pose: None,
+            copied: Vec::new(),
         }
     }
 
-    fn words(&self, touch: &Imprint, answer: &Answer, charset: Charset) -> String {
-        let text = AnswerText {
-            model: &self.model,
-            touch,
-            answer,
-            top: self.top,
-            noise: self.noise,
-        };
-        text.text(charset)
+    /// The answer to touches that may not fit the mask, with the pose if it is asked for.
+    fn checked_answer(&self, touches: &[Imprint]) -> Result<Recognition<'_>, Failure> {
+        let mask = self.noise.as_ref().and_then(Noise::dead);
+        for touch in touches.iter().map(Imprint::size) {
+            if let Some(mask) = mask.map(Imprint::size).filter(|mask| *mask != touch) {
+                let text = format!("--mask has {mask} taxels, the imprint {touch}");
+                return Err(Failure::new(text));
+            }
+        }
+        let mut answer = self.answer(touches);
+        if let Some(touch) = touches.last().filter(|_| self.asks_pose) {
+            answer.pose = self.pose(touch, &answer)?;
+        }
+        Ok(answer)
     }
 
-    /// Where the shape of an answer lies in the last touch, if this is asked for. None without an answer, and if the
-    /// shape does not leave this imprint.
-    fn pose(&self, touches: &[Imprint], answer: &Answer) -> Result<Option<PoseReport>, Failure> {
-        let (Some(pitch_mm), Some(shape), Some(touch)) = (self.pose, answer.shape, touches.last())
-        else {
+    /// Where the shape of an answer lies. None without an answer, and if the shape does not leave this imprint.
+    fn pose(
+        &self,
+        touch: &Imprint,
+        named: &Recognition<'_>,
+    ) -> Result<Option<PoseReport>, Failure> {
+        let Some(shape) = named.answer.shape else {
             return Ok(None);
         };
         let memory = MemoryGuard::new(None, "train the model in coarser steps to see poses");
@@ -216,16 +210,12 @@ impl Namer {
         });
         let found = poses.map_err(Failure::new)?.zip(touch.bounds());
         Ok(found.map(|((estimate, mut placed), bounds)| PoseReport {
-            name: self.name(shape).clone(),
+            name: named.name(shape).to_owned(),
             estimate,
             corner: [bounds.left.into(), bounds.top.into()],
             placed: placed.pop(),
-            pitch_mm,
+            pitch_mm: self.pitch_mm,
         }))
-    }
-
-    fn name(&self, shape: usize) -> &String {
-        &self.model.shapes()[shape].name
     }
 
     /// Adds the key `recognition` to the end of a frame's line of JSON: the answer of `taxel recognise` to the
@@ -235,26 +225,23 @@ impl Namer {
         line.extend(b",\"recognition\":");
         match imprint.filter(|imprint| !imprint.is_empty()) {
             None => line.extend(b"null"),
-            Some(&imprint) => {
-                let answer = self.answer(&[imprint]);
-                json::extend_ascii(line, &self.json(&[imprint], &answer, &[], None));
-            }
+            Some(&imprint) => json::extend_ascii(line, &self.answer(&[imprint])),
         }
         line.extend(b"}\n");
     }
 
     /// The answer to an imprint in words; empty if no taxel is active.
     pub(crate) fn text(&self, imprint: &Imprint, charset: Charset) -> String {
-        match imprint.is_empty() {
-            true => String::new(),
-            false => self.words(imprint, &self.answer(&[*imprint]), charset),
+        if imprint.is_empty() {
+            return String::new();
         }
+        self.answer(&[*imprint]).text(imprint, charset)
     }
 }
 
 impl Recognise {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
-        let pitch = self.pitch.pitch(&cx.settings)?.of(None);
+        let pitch_mm = self.pitch.pitch(&cx.settings)?.of(None);
         let model = self.model.clone().unwrap_or(model::DEFAULT.into());
         let found = model::find(model, &cx.shelf)?;
         let noise = match (self.noise, &self.mask) {
@@ -278,7 +265,8 @@ impl Recognise {
         let namer = Namer {
             reject: self.reject,
             top: self.top.map(wide),
-            pose: self.pose.then_some(pitch),
+            asks_pose: self.pose,
+            pitch_mm,
             ..FoundNamer(found, noise).ready(false, cx.charset)?
         };
         match input {
@@ -304,9 +292,10 @@ impl Recognise {
         let is_line = is_line(&start);
         let read = Box::new(Cursor::new(start).chain(input));
         let whole = Input { name, read };
-        Ok(match is_line {
-            true => Question::Lines(whole),
-            false => Question::Touch(whole.content()?),
+        Ok(if is_line {
+            Question::Lines(whole)
+        } else {
+            Question::Touch(whole.content()?)
         })
     }
 
@@ -328,42 +317,36 @@ impl Recognise {
             ));
         }
         let touch = content.imprint();
-        check_mask(&[*touch], namer)?;
-        let answer = namer.answer(&[*touch]);
-        let pose = namer.pose(&[*touch], &answer)?;
+        let named = namer.checked_answer(&[*touch])?;
         cx.print(&if self.json {
-            json::ascii(&namer.json(&[*touch], &answer, &[], pose)) + "\n"
+            json::ascii(&named) + "\n"
         } else {
-            let pose = match pose {
-                None if self.pose => "no pose of the model is known for this imprint\n".to_owned(),
-                pose => pose.map_or(String::new(), |pose| pose.text(touch, cx.charset)),
-            };
-            namer.words(touch, &answer, cx.charset) + &pose
+            named.text(touch, cx.charset)
         })?;
-        if self.is_expected(&answer, namer) {
+        if self.is_expected(&named) {
             return Ok(());
         }
-        let names = match answer.state {
-            AnswerState::Tied => &answer.tied[..],
-            _ => answer.shape.as_slice(),
+        let shapes = match named.answer.state {
+            AnswerState::Tied => &named.answer.tied[..],
+            _ => named.answer.shape.as_slice(),
         };
-        let names = names.iter().map(|&own| format!("{:?}", namer.name(own)));
+        let names = shapes.iter().map(|&own| format!("{:?}", named.name(own)));
         let names = names.collect::<Vec<_>>().join(" or ");
         let found = if names.is_empty() { "no shape" } else { &names };
-        Err(self.unexpected(&format!("{found} ({})", answer.state.name())))
+        let state = named.answer.state.name();
+        Err(self.unexpected(&format!("{found} ({state})")))
     }
 
     fn answer_lines(&self, input: Input, namer: &Namer) -> Result<(), Failure> {
         let (all, others) = (AtomicU64::new(0), AtomicU64::new(0));
         let answer = |line: &[u8], text: &mut Vec<u8>| -> Result<(), Failure> {
             let (touches, copied) = read_line(line)?;
-            check_mask(&touches, namer)?;
-            let answer = namer.answer(&touches);
+            let mut named = namer.checked_answer(&touches)?;
+            named.copied = copied;
             all.fetch_add(1, Ordering::Relaxed);
-            let is_other = !self.is_expected(&answer, namer);
+            let is_other = !self.is_expected(&named);
             others.fetch_add(is_other.into(), Ordering::Relaxed);
-            let pose = namer.pose(&touches, &answer)?;
-            json::extend_ascii(text, &namer.json(&touches, &answer, &copied, pose));
+            json::extend_ascii(text, &named);
             Ok(())
         };
         let jobs = self.jobs.map_or(0, usize::from);
@@ -377,10 +360,13 @@ impl Recognise {
         }
     }
 
-    fn is_expected(&self, answer: &Answer, namer: &Namer) -> bool {
-        let named = answer.shape.map(|shape| namer.name(shape));
-        let is_named = answer.state != AnswerState::Tied && named == self.expect.as_ref();
-        is_named || self.expect.is_none()
+    fn is_expected(&self, named: &Recognition<'_>) -> bool {
+        let Some(expected) = &self.expect else {
+            return true;
+        };
+        let answer = &named.answer;
+        let name = answer.shape.map(|shape| named.name(shape));
+        answer.state != AnswerState::Tied && name == Some(expected)
     }
 
     fn unexpected(&self, found: &str) -> Failure {
@@ -394,17 +380,6 @@ impl Recognise {
 enum Question {
     Touch(Content),
     Lines(Input),
-}
-
-fn check_mask(touches: &[Imprint], namer: &Namer) -> Result<(), Failure> {
-    let mask = namer.noise.as_ref().and_then(Noise::dead);
-    for touch in touches.iter().map(Imprint::size) {
-        if let Some(mask) = mask.map(Imprint::size).filter(|mask| *mask != touch) {
-            let text = format!("--mask has {mask} taxels, the imprint {touch}");
-            return Err(Failure::new(text));
-        }
-    }
-    Ok(())
 }
 
 /// Whether a text begins with a question: a whole JSON object that is not a stored shape, even if it is wrong. An

@@ -7,8 +7,8 @@ use taxel_core::geometry::{Ellipse, Pen, Point, Side, Solid};
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::number::{differing, short};
 use taxel_core::recognition::{
-    AngleEstimate, Answer, AnswerState, Evidence, Model, Nearest, Noise, PlacedSource,
-    PoseEstimate, SearchMethod,
+    AngleEstimate, Answer, AnswerState, Model, Nearest, Noise, PlacedSource, PoseEstimate,
+    SearchMethod,
 };
 use taxel_files::formats::value::{self, decimal, deviation, percent};
 
@@ -21,21 +21,24 @@ const SHOWN: usize = 8;
 
 const BAR: usize = 30;
 
-pub(crate) struct AnswerJson<'a> {
+/// The answer of recognition to one or several touches, in words and as JSON: of `taxel recognise`, and of frames that
+/// are named.
+pub(crate) struct Recognition<'a> {
     pub(crate) model: &'a Model,
-    pub(crate) answer: &'a Answer,
+    pub(crate) answer: Answer,
     pub(crate) noise: Option<Noise>,
     /// The nearest imprint of the model; None if all are larger than the matrix.
     pub(crate) nearest: Option<Nearest>,
-    /// The number of shapes of the ranking to write; None for all.
+    /// The number of shapes of the ranking to show; None for eight in words and all in JSON.
     pub(crate) top: Option<usize>,
     pub(crate) asks_pose: bool,
     /// The place of the shape; None if it is unknown.
     pub(crate) pose: Option<PoseReport>,
-    pub(crate) copied: Vec<(&'static str, &'a RawValue)>,
+    /// The keys of a line that its answer repeats.
+    pub(crate) copied: Vec<(&'static str, Box<RawValue>)>,
 }
 
-impl Serialize for AnswerJson<'_> {
+impl Serialize for Recognition<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
         struct Ranked<'a> {
@@ -48,8 +51,8 @@ impl Serialize for AnswerJson<'_> {
             distance: u32,
             imprint: &'a Imprint,
         }
-        let name = |shape: usize| self.model.shapes()[shape].name.as_str();
-        let answer = self.answer;
+        let name = |shape: usize| self.name(shape);
+        let answer = &self.answer;
         let mut map = serializer.serialize_map(None)?;
         for (key, value) in &self.copied {
             map.serialize_entry(key, value)?;
@@ -82,34 +85,22 @@ impl Serialize for AnswerJson<'_> {
     }
 }
 
-/// An answer for people: the name and how far it can be trusted, bars, and the nearest imprint.
-/// ```text
-/// ellipse: likely
-///   ellipse  ##########################         87.3 %
-///   hexagon  ####                               12.7 %
-/// nearest: ellipse, 2 taxels differ
-///   ..##+...
-///   ..##-...
-///   # both   + only in the touch   - only in the nearest imprint
-/// ```
-pub(crate) struct AnswerText<'a> {
-    pub(crate) model: &'a Model,
-    pub(crate) touch: &'a Imprint,
-    pub(crate) answer: &'a Answer,
-    /// The number of shapes of the ranking to show; None for eight.
-    pub(crate) top: Option<usize>,
-    pub(crate) noise: Option<Noise>,
-}
-
-impl AnswerText<'_> {
-    pub(crate) fn text(&self, charset: Charset) -> String {
-        let (touch, answer) = (self.touch, self.answer);
-        let touches = [*touch];
-        let evidence = Evidence::of(&touches).under(self.noise.as_ref());
-        let nearest = self.model.nearest_of(evidence);
-        let mut text = self.verdict(nearest.is_some()) + "\n";
+impl Recognition<'_> {
+    /// The answer to one touch for people: the name and how far it can be trusted, bars, and the nearest imprint.
+    /// ```text
+    /// ellipse: likely
+    ///   ellipse  ##########################         87.3 %
+    ///   hexagon  ####                               12.7 %
+    /// nearest: ellipse, 2 taxels differ
+    ///   ..##+...
+    ///   ..##-...
+    ///   # both   + only in the touch   - only in the nearest imprint
+    /// ```
+    pub(crate) fn text(&self, touch: &Imprint, charset: Charset) -> String {
+        let answer = &self.answer;
+        let mut text = self.verdict(touch) + "\n";
         // If no imprint of the model fits on the matrix, nothing was compared.
-        if let (Some(noise), Some(nearest)) = (self.noise, &nearest) {
+        if let (Some(noise), Some(nearest)) = (self.noise, &self.nearest) {
             let compared = match answer.method {
                 SearchMethod::Exact => "only the imprint itself is looked up",
                 SearchMethod::OneFlip => "compared with imprints that differ by at most one taxel",
@@ -135,19 +126,23 @@ impl AnswerText<'_> {
         if answer.ranking.len() > top {
             text += &format!("  and {} more\n", answer.ranking.len() - top);
         }
-        if let Some(nearest) = nearest.filter(|nearest| nearest.distance > 0) {
-            text += &self.nearest(&nearest);
+        if let Some(nearest) = self.nearest.as_ref().filter(|own| own.distance > 0) {
+            text += &self.differences(touch, nearest);
         }
-        charset.lines(&text)
+        let pose = match &self.pose {
+            Some(pose) => pose.text(touch, charset),
+            None if self.asks_pose => "no pose of the model is known for this imprint\n".to_owned(),
+            None => String::new(),
+        };
+        charset.lines(&text) + &pose
     }
 
-    fn name(&self, shape: usize) -> &str {
+    pub(crate) fn name(&self, shape: usize) -> &str {
         &self.model.shapes()[shape].name
     }
 
-    /// Returns the first line: the shape and how certain it is, or why there is none. `any_fits` tells whether any
-    /// imprint of the model fits on the matrix.
-    fn verdict(&self, any_fits: bool) -> String {
+    /// Returns the first line: the shape and how certain it is, or why there is none.
+    fn verdict(&self, touch: &Imprint) -> String {
         match (self.answer.state, self.answer.shape) {
             (AnswerState::Tied, _) => {
                 let tied = self.answer.tied.iter().map(|&shape| self.name(shape));
@@ -157,22 +152,22 @@ impl AnswerText<'_> {
                 "rejected: no shape reaches the probability of --reject".to_owned()
             }
             (state, Some(shape)) => format!("{}: {}", self.name(shape), state.name()),
-            (_, None) if any_fits => {
+            (_, None) if self.nearest.is_some() => {
                 "unknown: no shape of the model leaves this imprint".to_owned()
             }
-            (_, None) => format!(
-                "unknown: no imprint of the model fits on {} taxels",
-                self.touch.size()
-            ),
+            (_, None) => {
+                let size = touch.size();
+                format!("unknown: no imprint of the model fits on {size} taxels")
+            }
         }
     }
 
     /// Draws the touch and the nearest imprint in one matrix.
-    fn nearest(&self, nearest: &Nearest) -> String {
+    fn differences(&self, touch: &Imprint, nearest: &Nearest) -> String {
         let dead = self.noise.as_ref().and_then(Noise::dead);
         let sign = |column, row| {
             let is = |imprint: &Imprint| imprint.get(column, row);
-            match (is(self.touch), is(&nearest.imprint)) {
+            match (is(touch), is(&nearest.imprint)) {
                 _ if dead.is_some_and(is) => 'x',
                 (true, true) => '#',
                 (true, false) => '+',
@@ -182,8 +177,8 @@ impl AnswerText<'_> {
         };
         let (name, distance) = (self.name(nearest.shape), differing(nearest.distance));
         let mut text = format!("nearest: {name}, {distance}\n");
-        for row in 0..self.touch.rows() {
-            let row: String = (0..self.touch.columns())
+        for row in 0..touch.rows() {
+            let row: String = (0..touch.columns())
                 .map(|column| sign(column, row))
                 .collect();
             text += &format!("  {row}\n");
@@ -258,7 +253,7 @@ impl PoseReport {
         }
     }
 
-    pub(crate) fn text(&self, touch: &Imprint, charset: Charset) -> String {
+    fn text(&self, touch: &Imprint, charset: Charset) -> String {
         let estimate = &self.estimate;
         let mut text = format!("centre {} cells", value::pose_centre(estimate, 1.0));
         if let Some(pitch) = self.pitch_mm {

@@ -2,6 +2,7 @@
 
 use serde::{Serialize, Serializer};
 use serde_json::Value;
+use taxel_files::formats::value::csv_line;
 
 use crate::cli::output::charset::Charset;
 use crate::tui::widget::write::width;
@@ -32,11 +33,12 @@ pub(crate) fn table(rows: &[Vec<String>], left: &[usize], charset: Charset) -> S
         for (column, (cell, widest)) in row.iter().zip(&widths).enumerate() {
             let gap = if column > 0 { "  " } else { "" };
             let missing = " ".repeat(widest - width(cell));
-            let [before, after] = match left.contains(&column) {
-                true => ["", &missing],
-                false => [&*missing, ""],
+            let [first, last] = if left.contains(&column) {
+                [&**cell, &missing]
+            } else {
+                [&*missing, cell]
             };
-            text.extend([gap, before, cell, after]);
+            text.extend([gap, first, last]);
         }
         text.truncate(begin + text[begin..].trim_end().len());
         text.push('\n');
@@ -62,16 +64,12 @@ pub(crate) fn csv(records: &[Record]) -> String {
             .map_or_else(String::new, |number| number.to_string()),
         other => other.to_string(),
     };
-    let names = records.iter().take(1).map(|record| {
-        let names = record.0.iter().map(|(name, _)| *name);
-        names.collect::<Vec<_>>().join(",")
-    });
-    let lines = records.iter().map(|record| {
-        let cells = record.0.iter().map(cell);
-        cells.collect::<Vec<_>>().join(",")
-    });
-    let lines = names.chain(lines);
-    lines.map(|line| line + "\n").collect()
+    let names = records.iter().take(1);
+    let names = names.map(|record| csv_line(record.0.iter().map(|(name, _)| *name)));
+    let lines = records
+        .iter()
+        .map(|record| csv_line(record.0.iter().map(cell)));
+    names.chain(lines).collect()
 }
 
 /// Draws a bar for a share, of at most `width` characters. The length is rounded, so a small share may have no bar.

@@ -61,7 +61,7 @@ pub fn load_model(path: &Path) -> Result<Model, ReadError> {
 ///
 /// # Errors
 /// The errors of [`load_model`]; also for a shard, which knows some of the poses only.
-pub fn load_whole_model(path: &Path) -> Result<Model, ReadError> {
+fn load_whole_model(path: &Path) -> Result<Model, ReadError> {
     let model = load_model(path)?;
     let shard = model.shard();
     if shard == Shard::WHOLE {
@@ -223,7 +223,7 @@ impl ModelCache {
 ///
 /// # Errors
 /// The errors of `train`.
-pub fn cached_or_trained<'a, E>(
+fn cached_or_trained<'a, E>(
     cache: Option<&ModelCache>,
     training: Training<'a>,
     train: impl FnOnce(Training<'a>) -> Result<Model, E>,
@@ -453,7 +453,7 @@ impl FoundModel {
 }
 
 /// The message for an unknown set; it lists the built-in sets and the stored models.
-pub fn unknown_set(name: &str, stored: &[Name]) -> String {
+fn unknown_set(name: &str, stored: &[Name]) -> String {
     let own = ModelChoice::BUILT_IN.iter().map(ModelChoice::name);
     let all: Vec<&str> = own.chain(stored.iter().map(Name::as_str)).collect();
     format!(

@@ -27,7 +27,7 @@ use crate::cli::commands::model::{Table, TableFlags, find, fits_in_table, ready,
 use crate::cli::failure::{Failure, Named};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{Count, EvaluationJson, NamedBy, summary};
-use crate::cli::output::table::{Record, csv, row, table};
+use crate::cli::output::table::{Record, row, table};
 
 const EXAMPLES: &str = "\
 A row is a true shape, a column the name that the best classifier gives it; the
@@ -81,9 +81,12 @@ pub(crate) struct Confusion {
     /// Another way to name shapes: z, knn, template, or all of them in a table
     #[arg(long, value_name = "NAME", value_parser = classifiers(), hide_possible_values = true)]
     classifier: Option<String>,
-    /// Round a descriptor to steps, such as cg_cd=0.01
+    // A doc comment would want quotation marks around the key.
     #[arg(long, value_name = "KEY=STEP", requires = "descriptors")]
-    #[arg(conflicts_with = "classifier")]
+    #[arg(
+        conflicts_with = "classifier",
+        help = "Round a descriptor to steps, such as cg_cd=0.01"
+    )]
     round: Vec<Rounding>,
     /// Neighbours that vote in knn; default 1
     #[arg(long, value_name = "N", requires = "with_classifier", value_parser = whole(1_u32..))]
@@ -187,9 +190,10 @@ impl Confusion {
         self.noise.check(&found.sensor())?;
         let most = "shapes, and a drawing shows at most 64; .csv takes all";
         let fits = !is_matrix || ConfusionMap::new(&shapes, []).is_some();
-        let refused = match is_table {
-            true => "expected a name that ends in .csv, for the table of all classifiers".into(),
-            false => format!("{} {most}", shapes.len()),
+        let refused = if is_table {
+            "expected a name that ends in .csv, for the table of all classifiers".to_owned()
+        } else {
+            format!("{} {most}", shapes.len())
         };
         match self.table.drawing().filter(|_| is_table || !fits) {
             Some(path) => Err(Failure::new(refused)).named(path.display()),
@@ -260,9 +264,10 @@ impl Confusion {
         if self.table.json {
             return json::ascii(&json!({"labels": labels, "errors": errors})) + "\n";
         }
-        let rows = square(&labels, |row, column| match row == column {
-            true => "–".to_owned(),
-            false => percentage(errors[row][column], 2),
+        let error = |row: usize, column: usize| percentage(errors[row][column], 2);
+        let rows = square(&labels, |row, column| {
+            let error = (row != column).then(|| error(row, column));
+            error.unwrap_or("–".to_owned())
         });
         table(&rows, &[0], charset) + "errors in percent, for each pair alone\n"
     }
@@ -398,7 +403,7 @@ impl Table for Classifiers {
         table(&rows, &[0], charset) + &features + &sampled(&self.reached)
     }
 
-    fn csv(&self) -> String {
+    fn records(&self) -> Vec<Record> {
         let records = self.rows().map(|(name, own, top_two)| {
             Record(vec![
                 ("classifier", json!(name)),
@@ -407,15 +412,11 @@ impl Table for Classifiers {
                 ("information_bits", json!(own.information_bits)),
             ])
         });
-        csv(&records.collect::<Vec<_>>())
+        records.collect()
     }
 
     fn json(&self) -> String {
         let errors = self.rows().map(|(name, own, _)| (name, own.error()));
         json::text(&errors.collect::<BTreeMap<_, _>>()) + "\n"
-    }
-
-    fn svg(&self) -> Option<String> {
-        None
     }
 }

@@ -23,9 +23,6 @@ use crate::cli::failure::Failure;
 use crate::cli::output::evaluation::{self, Count, NamedBy};
 
 const SHOW_EXAMPLES: &str = "\
-Prints the shapes, the sensor and the poses of a model, and how often the best
-answer to one touch is wrong.
-
 Examples:
   taxel model show parts
   taxel model show ./parts.npz --json";
@@ -52,9 +49,10 @@ impl Show {
             None => ready(find(&self.model, &cx.shelf)?, false, cx.charset)?,
         };
         let limit = Evaluation::of(&model);
-        cx.print(&match self.json {
-            true => json::ascii(&card(&model, &limit)) + "\n",
-            false => cx.charset.lines(&text(&model, &limit)),
+        cx.print(&if self.json {
+            json::ascii(&card(&model, &limit)) + "\n"
+        } else {
+            text(&model, &limit)
         })
     }
 }

@@ -28,6 +28,7 @@ use crate::cli::failure::{Failure, Named};
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::progress::ProgressDisplay;
+use crate::cli::output::table::{Record, csv};
 use crate::cli::signals::{self, Signals};
 
 /// The model that is used if none is named: the seven figures at their default sizes.
@@ -87,6 +88,7 @@ pub(crate) struct SetFlags {
 }
 
 /// The forms of a table, and the file that it is written to.
+#[expect(clippy::struct_excessive_bools, reason = "flags")]
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct TableFlags {
     /// Write the table (.csv) or a drawing of it (.svg)
@@ -110,12 +112,21 @@ pub(crate) struct TableFlags {
 trait Table {
     fn text(&self, charset: Charset) -> String;
 
-    fn csv(&self) -> String;
+    /// The lines of the CSV.
+    fn records(&self) -> Vec<Record> {
+        Vec::new()
+    }
+
+    fn csv(&self) -> String {
+        csv(&self.records())
+    }
 
     fn json(&self) -> String;
 
     /// None if there is no drawing of it.
-    fn svg(&self) -> Option<String>;
+    fn svg(&self) -> Option<String> {
+        None
+    }
 }
 
 impl TableFlags {
@@ -215,7 +226,7 @@ fn watched<T>(
     let signals = Signals::catch()?;
     let display = ProgressDisplay::counting(noun, all, quiet, cx.charset);
     let done = work(&signals.progress(&display));
-    done.ok_or_else(|| signals.failure().into())
+    done.ok_or_else(|| signals.failure())
 }
 
 /// Trains on several threads, until it is done, a signal comes or the memory is used up.
@@ -235,7 +246,7 @@ fn trained<T: Send>(
     let hint =
         "; use a larger sensor, other positions or smaller shapes, or allow it with --allow-cut";
     done.map_err(Failure::new)?.map_err(|error| match error {
-        TrainingError::Stopped => signals.failure().into(),
+        TrainingError::Stopped => signals.failure(),
         error @ TrainingError::Cut { .. } => Failure::from(error).with_hint(hint),
         error => error.into(),
     })

@@ -27,7 +27,7 @@ use crate::cli::failure::{Failure, Named};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{Count, WEIGHTED};
 use crate::cli::output::plot;
-use crate::cli::output::table::{Record, bar, csv, row, table};
+use crate::cli::output::table::{Record, bar, row, table};
 
 /// The most noisy touches of a shape.
 const MOST: u64 = 1_000_000_000;
@@ -45,7 +45,7 @@ pub(super) struct NoiseFlags {
         value_delimiter = ',',
         requires = "with_noise"
     )]
-    #[arg(value_parser = whole::<u32>(0..=4095))]
+    #[arg(value_parser = whole::<u32>(0..=4095), default_value = "0", hide_default_value = true)]
     dead: Vec<u32>,
     /// Noisy touches of each shape; default 1000
     #[arg(long, value_name = "N", value_parser = whole(1..=MOST), requires = "with_noise")]
@@ -82,9 +82,8 @@ impl NoiseFlags {
             return Ok(());
         };
         let allowed = format!("(allowed: 0 to {cells}, the taxels of the matrix)");
-        Err(Failure::new(format!(
-            "--dead {dead} is above {cells} {allowed}"
-        )))
+        let text = format!("--dead {dead} is above {cells} {allowed}");
+        Err(Failure::new(text))
     }
 
     pub(super) fn rates(
@@ -102,18 +101,13 @@ impl NoiseFlags {
         if !asked.table.quiet {
             note_left_out(model, size, cx);
         }
-        let dead = if self.dead.is_empty() {
-            &[0][..]
-        } else {
-            &self.dead
-        };
         let (each, seed) = (self.touches.unwrap_or(1000), asked.seed.unwrap_or_default());
         let given = asked.known();
-        let rows = noise.count() * dead.len() as u64;
+        let rows = noise.count() * self.dead.len() as u64;
         let all = each * model.shapes().len() as u64 * rows;
         let rows = watched((all, "touches"), asked.table.quiet, cx, |progress| {
             let mut rows = Vec::new();
-            for &dead in dead {
+            for &dead in &self.dead {
                 for value in noise.values() {
                     let noise = Noise::new(value).ok()?;
                     let mut touches = NoisyTouches::new(size, noise, each, seed);
@@ -127,12 +121,23 @@ impl NoiseFlags {
             }
             Some(rows)
         });
+        let held = match given {
+            Some(_) => "values some shape has",
+            None => "imprint some shape leaves",
+        };
+        let mut note = format!(
+            "held: touches whose {held} without noise, too\n\
+             claimed: the mean probability of the answers\n"
+        );
+        if model.shapes().iter().any(|shape| shape.weight > 1) {
+            note += WEIGHTED;
+        }
+        let rows = rows?;
         Ok(NoisyRates {
-            rows: rows?,
+            rows,
             size,
             seed,
-            is_given: given.is_some(),
-            is_weighted: model.shapes().iter().any(|shape| shape.weight > 1),
+            note,
         })
     }
 }
@@ -148,9 +153,8 @@ fn note_left_out(model: &Model, size: MatrixSize, cx: &Context) {
         });
     let shapes = shapes.collect::<Vec<_>>().join(", ");
     if !shapes.is_empty() {
-        cx.note(&format!(
-            "left out, because they do not fit on {size}: {shapes}"
-        ));
+        let reason = format!("because they do not fit on {size}");
+        cx.note(&format!("left out, {reason}: {shapes}"));
     }
 }
 
@@ -159,8 +163,8 @@ pub(super) struct NoisyRates {
     rows: Vec<(f64, u32, RecognitionRate)>,
     size: MatrixSize,
     seed: u64,
-    is_given: bool,
-    is_weighted: bool,
+    /// Below the table: what `held` means, and whether touches have weights.
+    note: String,
 }
 
 impl NoisyRates {
@@ -172,22 +176,6 @@ impl NoisyRates {
             (rows[0].1, points.collect())
         });
         curves.collect()
-    }
-
-    fn records(&self) -> Vec<Record> {
-        let record = |(noise, dead, rate): &(f64, u32, RecognitionRate)| {
-            Record(vec![
-                ("noise", json!(noise)),
-                ("dead", json!(dead)),
-                ("touches", json!(Count(rate.weighted_touches))),
-                ("right", json!(Count(rate.weighted_right))),
-                ("accuracy", json!(rate.accuracy)),
-                ("standard_error", json!(rate.standard_error)),
-                ("claimed", json!(rate.mean_confidence)),
-                ("held", json!(rate.held_share)),
-            ])
-        };
-        self.rows.iter().map(record).collect()
     }
 }
 
@@ -208,16 +196,8 @@ impl Table for NoisyRates {
         }
         let touches = self.rows.first().map_or(0, |(_, _, rate)| rate.touches);
         let (touches, seed) = (counted(touches, "touch"), self.seed);
-        let held = match self.is_given {
-            true => "values some shape has",
-            false => "imprint some shape leaves",
-        };
         let mut text = table(&rows, &[5], charset);
-        text += &format!(
-            "{touches} a row, seed {seed}\nheld: touches whose {held} without noise, too\n\
-             claimed: the mean probability of the answers\n{}",
-            if self.is_weighted { WEIGHTED } else { "" },
-        );
+        text += &format!("{touches} a row, seed {seed}\n{}", self.note);
         for (dead, points) in self.curves() {
             let dead = counted(dead, "dead taxel");
             match plot::lines("right", "noise", &points, charset) {
@@ -228,8 +208,20 @@ impl Table for NoisyRates {
         text
     }
 
-    fn csv(&self) -> String {
-        csv(&self.records())
+    fn records(&self) -> Vec<Record> {
+        let record = |(noise, dead, rate): &(f64, u32, RecognitionRate)| {
+            Record(vec![
+                ("noise", json!(noise)),
+                ("dead", json!(dead)),
+                ("touches", json!(Count(rate.weighted_touches))),
+                ("right", json!(Count(rate.weighted_right))),
+                ("accuracy", json!(rate.accuracy)),
+                ("standard_error", json!(rate.standard_error)),
+                ("claimed", json!(rate.mean_confidence)),
+                ("held", json!(rate.held_share)),
+            ])
+        };
+        self.rows.iter().map(record).collect()
     }
 
     fn json(&self) -> String {

@@ -33,7 +33,7 @@ use crate::cli::input::shapes;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::Count;
 use crate::cli::output::plot;
-use crate::cli::output::table::{Record, csv, row, table};
+use crate::cli::output::table::{Record, row, table};
 
 /// The most sizes that a search for the wanted error tries.
 const REFINED: u64 = 9;
@@ -132,11 +132,12 @@ impl Separate {
         }
         self.table.check()?;
         if let (Some(first), Some(last)) = (left_out.first(), left_out.last()) {
-            let sizes_left = match first == last {
-                true => first.to_string(),
-                false => format!("{first} to {last}"),
+            let last = if first == last {
+                String::new()
+            } else {
+                format!(" to {last}")
             };
-            let text = format!("{} {sizes_left}: {}", axis.name(), TrainingError::Large);
+            let text = format!("{} {first}{last}: {}", axis.name(), TrainingError::Large);
             if sizes.is_empty() {
                 return Err(Failure::new(text));
             }
@@ -159,17 +160,18 @@ impl Separate {
             };
             thresholds.iter().map(curve).collect()
         })?;
-        let curves = Curves {
+        let wanted = self.want;
+        let separated = Separated {
             axis,
             curves,
-            wanted: self.want,
+            wanted,
         };
         if self.table.csv {
             // The table has no place for the result of --want. It is an answer, not a note, so --quiet does not
             // suppress it.
-            curves.found().lines().for_each(|line| cx.note(line));
+            separated.found().lines().for_each(|line| cx.note(line));
         }
-        self.table.give(&curves, cx)
+        self.table.give(&separated, cx)
     }
 
     fn check(&self) -> Result<(), Failure> {
@@ -243,7 +245,10 @@ fn positions_of(model: &Model) -> Option<CellPositions> {
 /// A threshold, the limit of one touch at each size, and the smallest size that reaches the wanted error, if any does.
 type Curve = (f64, Vec<SeparationPoint>, Option<SmallestSize>);
 
-struct Curves {
+/// A title and the points below it.
+type Line = (String, Vec<(f64, f64)>);
+
+struct Separated {
     axis: SizeAxis,
     curves: Vec<Curve>,
     wanted: Option<f64>,
@@ -253,7 +258,7 @@ fn short(value: f64) -> String {
     decimal(value, 6)
 }
 
-impl Curves {
+impl Separated {
     fn points(&self) -> impl Iterator<Item = &SeparationPoint> {
         self.curves.iter().flat_map(|(_, points, _)| points)
     }
@@ -282,7 +287,7 @@ impl Curves {
 
     /// The name of the horizontal axis of a plot, and its curves: over the sizes, or over the thresholds if there is
     /// only one size.
-    fn plotted(&self) -> (&'static str, Vec<(String, Vec<(f64, f64)>)>) {
+    fn plotted(&self) -> (&'static str, Vec<Line>) {
         let (name, several) = (self.axis.name(), self.curves.len() > 1);
         if several && self.curves.iter().all(|(_, points, _)| points.len() == 1) {
             let points = self.points().map(|point| (point.threshold, point.error()));
@@ -334,7 +339,7 @@ impl Curves {
     }
 }
 
-impl Table for Curves {
+impl Table for Separated {
     fn text(&self, charset: Charset) -> String {
         let name = self.axis.name();
         let titles = ["threshold", "error", "certain", "imprints", "sensor"];
@@ -364,9 +369,8 @@ impl Table for Curves {
         }
     }
 
-    fn csv(&self) -> String {
-        let records = self.points().map(|point| self.record(point));
-        csv(&records.collect::<Vec<_>>())
+    fn records(&self) -> Vec<Record> {
+        self.points().map(|point| self.record(point)).collect()
     }
 
     /// With `--want`, `smallest`, `step` and `missed_again` are null if no size reaches the error.

@@ -41,6 +41,7 @@ Examples:
   taxel model train parts.jsonl --shard 1/4 --out part-1.npz"#;
 
 /// Learn every imprint of a set of shapes
+#[expect(clippy::struct_excessive_bools, reason = "flags")]
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = EXAMPLES,
