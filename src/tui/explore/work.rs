@@ -204,29 +204,24 @@ pub(super) fn export(app: &mut App, name: String, existing: Existing) {
     let end = "stopping leaves no file behind";
     begin(app, title, poses, end, move |progress| {
         let written = write_file(&found.sweep, &path, existing, progress);
-        let all = counted(found.sweep.atlas.len() as u64, "imprint");
+        let mut text = format!("written: {}", absolute(&path));
+        if is_filtered {
+            let all = counted(found.sweep.atlas.len() as u64, "imprint");
+            text += &format!(", all {all} (the filter does not apply)");
+        }
         answer(move |app| {
-            let place = finish(app);
-            match written {
-                Ok(true) if is_filtered => inform(
-                    app,
-                    format!(
-                        "written: {}, all {all} (the filter does not apply)",
-                        absolute(&path)
-                    ),
-                ),
-                Ok(true) => inform(app, format!("written: {}", absolute(&path))),
-                Ok(false) => {
-                    let again = name.clone();
-                    let yes = move |app: &mut App| export(app, again, Existing::Replaced);
-                    app.pages.truncate(place.unwrap_or(usize::MAX));
-                    app.open(Question::replaces(&name, yes));
-                }
-                Err(reason) => {
-                    app.pages.truncate(place.unwrap_or(usize::MAX));
-                    refuse(app, reason);
-                }
+            let place = finish(app).unwrap_or(usize::MAX);
+            if written == Ok(true) {
+                return inform(app, text);
             }
+            // Help that covers the page gives way.
+            app.pages.truncate(place);
+            if let Err(reason) = written {
+                return refuse(app, reason);
+            }
+            let again = name.clone();
+            let yes = move |app: &mut App| export(app, again, Existing::Replaced);
+            app.open(Question::replaces(&name, yes));
         })
     });
 }

@@ -86,12 +86,6 @@ impl Recognition {
         self.choice = choice;
     }
 
-    pub(super) fn begin_training(&mut self, poses: u64) {
-        if let Some(preparing) = &mut self.preparing {
-            preparing.poses = Some(poses);
-        }
-    }
-
     pub(super) fn choice(&self) -> &ModelChoice {
         let preparing = self.preparing.as_ref();
         preparing.map_or(&self.choice, |preparing| &preparing.choice)

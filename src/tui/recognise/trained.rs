@@ -45,7 +45,12 @@ impl TrainedModel {
         if let Some(known) = known.filter(|known| version.is_some() && is_same(known)) {
             return Ok(known);
         }
-        let begins = |poses| progress.post(move |app| app.recognition.begin_training(poses));
+        let begins = |poses| {
+            progress.post(move |app| {
+                let preparing = app.recognition.preparing.as_mut();
+                preparing.map(|preparing| preparing.poses.insert(poses));
+            });
+        };
         let model = models::ready(models, choice.clone(), begins, progress)?;
         Ok(Arc::new(Self {
             evaluation: Evaluation::of(&model),
