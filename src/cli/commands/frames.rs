@@ -610,7 +610,7 @@ impl Answering<'_> {
         let processing = &pipeline.processing;
         let one = |number: u64| number..number + 1;
         let numbers = match choice {
-            Choice::All => Vec::from([0..u64::MAX]),
+            Choice::All => std::iter::once(0..u64::MAX).collect(),
             Choice::Number(number) => vec![one(*number)],
             Choice::Label(_) => channel.labelled.iter().copied().map(one).collect(),
             // Without tare and gain the listing has it already.
