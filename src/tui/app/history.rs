@@ -1,7 +1,7 @@
 //! Every earlier and later state of the document, and where each comes from.
 
 use taxel_core::parameter::Parameter;
-use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
+use taxel_core::sensor::SENSOR_PARAMETERS;
 use taxel_core::source::Source;
 use taxel_core::touch::Plane;
 use taxel_files::formats::name::folded;
@@ -297,41 +297,25 @@ impl History {
     }
 }
 
+/// What changed from one document to the next, in words.
 pub fn difference(from: &Document, to: &Document) -> String {
-    let sensor = of_sensor(&from.sensor, &to.sensor);
-    let mut parts = vec![sensor, of_source(from.source.as_ref(), to.source.as_ref())];
-    let fits = from.edits.columns() == to.edits.columns() && from.edits.rows() == to.edits.rows();
-    if parts.iter().all(String::is_empty) && is_emptied(from, to) {
-        parts.push("emptied".to_owned());
+    let mut changes = values(
+        SENSOR_PARAMETERS,
+        |p| from.sensor.get(p),
+        |p| to.sensor.get(p),
+    );
+    match (&from.source, &to.source) {
+        (_, None) => {}
+        (Some(from), Some(to)) if alike(from, to) => {
+            changes.extend(values(to.parameters(), |p| from.get(p), |p| to.get(p)));
+        }
+        (_, Some(to)) => changes.push(to.to_string()),
     }
     // A new source starts without edits, so this is not mentioned.
-    if fits && parts.iter().all(String::is_empty) {
-        parts.push(of_edits(from, to));
+    if changes.is_empty() {
+        changes.push(edits(from, to));
     }
-    parts.retain(|part| !part.is_empty());
-    parts.join(", ")
-}
-
-fn is_emptied(from: &Document, to: &Document) -> bool {
-    let is_empty = to.source.is_none() && to.edits.is_empty();
-    is_empty && (from.source.is_some() || from.edits.count() > 1)
-}
-
-fn of_sensor(from: &Sensor, to: &Sensor) -> String {
-    let value = |sensor: &Sensor, parameter| sensor.get(parameter);
-    values(SENSOR_PARAMETERS, |p| value(from, p), |p| value(to, p))
-}
-
-/// Returns the changes of the source: its values if it is the same kind of figure or the same picture, otherwise the
-/// whole new source. Empty if there is no source any more.
-fn of_source(from: Option<&Source>, to: Option<&Source>) -> String {
-    match (from, to) {
-        (_, None) => String::new(),
-        (Some(from), Some(to)) if alike(from, to) => {
-            values(to.parameters(), |p| from.get(p), |p| to.get(p))
-        }
-        (_, Some(to)) => to.to_string(),
-    }
+    changes.join(", ")
 }
 
 fn alike(from: &Source, to: &Source) -> bool {
@@ -346,35 +330,29 @@ fn values(
     parameters: &[Parameter],
     from: impl Fn(Parameter) -> Option<f64>,
     to: impl Fn(Parameter) -> Option<f64>,
-) -> String {
+) -> Vec<String> {
     let text = |parameter: Parameter, value: Option<f64>| {
         value.map_or("none".to_owned(), |value| parameter.format(value))
     };
-    let changed = parameters.iter().filter(|&&p| from(p) != to(p));
-    let changed = changed.map(|&parameter| {
-        let (before, after) = (from(parameter), to(parameter));
-        let label = parameter.row().label;
-        format!(
-            "{label} {} → {}",
-            text(parameter, before),
-            text(parameter, after)
-        )
+    let changed = parameters.iter().filter(|&&own| from(own) != to(own));
+    let changed = changed.map(|&own| {
+        let (before, after) = (text(own, from(own)), text(own, to(own)));
+        format!("{} {before} → {after}", own.row().label)
     });
-    changed.collect::<Vec<_>>().join(", ")
+    changed.collect()
 }
 
-fn of_edits(from: &Document, to: &Document) -> String {
+fn edits(from: &Document, to: &Document) -> String {
     let switched = from.edits.differing(&to.edits);
     match (switched.count(), switched.active().next()) {
-        (0, _) | (_, None) => String::new(),
+        (count, _) if to.is_empty() && (from.source.is_some() || count > 1) => "emptied".to_owned(),
         (1, Some((column, row))) => {
-            let touched = to.source.as_ref().is_some_and(|source| {
-                let touched = Plane::new(to.sensor).touch(source);
-                touched.get(column, row)
-            });
+            let touched = to
+                .source
+                .as_ref()
+                .is_some_and(|source| Plane::new(to.sensor).touch(source).get(column, row));
             let is_on = touched != to.edits.get(column, row);
-            let state = if is_on { "on" } else { "off" };
-            format!("taxel {column}, {row} {state}")
+            format!("taxel {column}, {row} {}", if is_on { "on" } else { "off" })
         }
         (count, _) => format!("{} switched", counted(count, "taxel")),
     }

@@ -45,8 +45,6 @@ pub(crate) struct ListDialog {
     purpose: Purpose,
     /// None until the library has answered.
     entries: Option<Vec<LibraryEntry>>,
-    /// The shapes that are left out because they cannot be deleted.
-    undeletable: Vec<String>,
     filter: TextField,
     matching: Vec<usize>,
     selected: usize,
@@ -61,7 +59,6 @@ pub(crate) fn open_list(app: &mut App, purpose: Purpose) {
     app.open(ListDialog {
         purpose,
         entries: None,
-        undeletable: Vec::new(),
         filter: TextField::new("", LONGEST),
         matching: Vec::new(),
         selected: 0,
@@ -90,8 +87,7 @@ impl ListDialog {
     /// Only the user's own shapes can be deleted.
     fn fill(&mut self, mut entries: Vec<LibraryEntry>) {
         if self.purpose == Purpose::Delete {
-            let shipped = entries.extract_if(.., |entry| entry.origin != ShapeOrigin::Own);
-            self.undeletable = shipped.map(|entry| entry.name).collect();
+            entries.retain(|entry| entry.origin == ShapeOrigin::Own);
         }
         self.entries = Some(entries);
         self.apply_filter();
@@ -159,14 +155,9 @@ impl ListDialog {
         if self.rows().len() > 0 {
             return None;
         }
-        let wanted = folded(self.filter.text());
-        let mut undeletable = self.undeletable.iter();
-        let shipped =
-            undeletable.find(|name| !wanted.is_empty() && folded(name.as_str()).contains(&wanted));
-        Some(match (&self.entries, shipped) {
-            (None, _) => "the library is being read".to_owned(),
-            (_, Some(name)) => format!("{name} comes with taxel and cannot be deleted"),
-            (Some(entries), _) if entries.is_empty() => match self.purpose {
+        Some(match &self.entries {
+            None => "the library is being read".to_owned(),
+            Some(entries) if entries.is_empty() => match self.purpose {
                 Purpose::Delete => "there are no shapes of your own".to_owned(),
                 _ => "the library is empty".to_owned(),
             },
