@@ -112,7 +112,7 @@ fn fields_are_edited_and_changed_in_steps() {
         ("f<Tab>16<PageUp>", "rx 16.0"),
         ("f<4x:Tab><Tab><PageDown>", "359°"),
         ("f<4x:Tab><Tab>359<PageUp>", "at 4.00, 4.00, 0°"),
-        ("f<6x:Tab><PageUp>", "wall 1.00"),
+        ("f<6x:Tab><PageUp>", "thickness 1.00"),
         ("f<Tab><Left><BS>5", "rx 4.50"),
         ("f<Tab><Home><Del>5", "rx 5.00"),
         ("f<Tab>12.5<BS><BS><BS><BS>3", "rx 3.00"),

@@ -132,7 +132,7 @@ named!(FigureKind, "figure", FigureKind::ALL);
 /// use taxel_core::prelude::*;
 /// let sensor = Sensor::default();
 /// let ring = Figure::ellipse(4.0, 4.0).at(1.99, 1.47).thickness(2.0).on(&sensor)?;
-/// assert_eq!(ring.to_string(), "ellipse rx 4.00 ry 4.00 at 1.99, 1.47, 0°, wall 2.00");
+/// assert_eq!(ring.to_string(), "ellipse rx 4.00 ry 4.00 at 1.99, 1.47, 0°, thickness 2.00");
 ///
 /// let error = Figure::hexagon(16.5).on(&sensor).unwrap_err();
 /// assert_eq!(error.to_string(), "side: 16.5 is above 16 (allowed: above 0, up to 16)");
@@ -426,7 +426,7 @@ impl fmt::Display for Figure {
         let Some(thickness) = self.get(Thickness) else {
             return Ok(());
         };
-        write!(f, ", wall {}", Thickness.format(thickness))?;
+        write!(f, ", thickness {}", Thickness.format(thickness))?;
         if self.has_hole() {
             Ok(())
         } else {

@@ -50,7 +50,7 @@ where
     let (mut answered, mut bad) = (0, 0);
     loop {
         let old = text.len();
-        let room = usize::try_from((read / 32).clamp(ROOM[0], ROOM[1])).unwrap_or(MAX_LINE);
+        let room = usize::try_from((read / 8).clamp(ROOM[0], ROOM[1])).unwrap_or(MAX_LINE);
         let new = fill(&mut *input.read, &mut text, room);
         let new = new.map_err(ReadError::from).named(&input.name)?;
         read += new as u64;

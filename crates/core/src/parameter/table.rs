@@ -277,9 +277,9 @@ pub const PARAMETERS: &[ParameterRow; 15] = &[
         parameter: Parameter::Thickness,
         key: "thickness",
         label: "Thickness",
-        short: "wall",
+        short: "thickness",
         default: 1.0,
-        meaning: "wall around one concentric hole; solid without it",
+        meaning: "distance from the outline to that of the hole; solid without it",
         ..LENGTH
     },
     ParameterRow {
