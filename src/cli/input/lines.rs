@@ -48,6 +48,8 @@ where
     let pool = signals::pool(jobs)?;
     let (mut text, mut read, mut number) = (Vec::new(), 0, 1);
     let (mut answered, mut bad) = (0, 0);
+    // Their memory is used again.
+    let mut pieces: Vec<Answers> = Vec::new();
     loop {
         let old = text.len();
         let room = usize::try_from((read / 8).clamp(ROOM[0], ROOM[1])).unwrap_or(MAX_LINE);
@@ -68,14 +70,15 @@ where
         let lines: Vec<&[u8]> = text[..end].split(|&byte| byte == b'\n').collect();
         // Small enough that the threads end together, large enough that they seldom meet.
         let piece = (lines.len() / (8 * pool.current_num_threads())).clamp(1, 64);
-        let pieces: Vec<Answers> = pool.install(|| {
-            let pieces = lines.par_chunks(piece).enumerate();
-            let answers = pieces.map_init(&answerer, |answer, (index, lines)| {
-                answers(lines, number + index * piece, noun, answer)
+        let count = lines.len().div_ceil(piece);
+        pieces.resize_with(count.max(pieces.len()), Answers::default);
+        pool.install(|| {
+            let pieces = lines.par_chunks(piece).zip(&mut pieces).enumerate();
+            pieces.for_each_init(&answerer, |answer, (index, (lines, own))| {
+                own.answer(lines, number + index * piece, noun, answer);
             });
-            answers.collect()
         });
-        for piece in pieces {
+        for piece in &pieces[..count] {
             output.write_all(&piece.text).map_err(Failure::of_output)?;
             answered += piece.answered;
             bad += piece.bad;
@@ -109,35 +112,42 @@ fn fill(input: &mut dyn Read, text: &mut Vec<u8>, room: usize) -> io::Result<usi
     read
 }
 
-/// Answers some lines; `first` is the number of the first one, from 1.
-fn answers(
-    lines: &[&[u8]],
-    first: usize,
-    noun: &str,
-    answer: &mut impl FnMut(&[u8], &mut Vec<u8>) -> Result<(), String>,
-) -> Answers {
-    let mut answers = Answers::default();
-    let text = &mut answers.text;
-    for (number, &line) in (first..).zip(lines) {
-        // Some programs start a text with a byte order mark.
-        let line = without_mark(line);
-        if line.trim_ascii().is_empty() {
-            continue;
+impl Answers {
+    /// Answers some lines; `first` is the number of the first one, from 1.
+    fn answer(
+        &mut self,
+        lines: &[&[u8]],
+        first: usize,
+        noun: &str,
+        answer: &mut impl FnMut(&[u8], &mut Vec<u8>) -> Result<(), String>,
+    ) {
+        let Self {
+            text,
+            answered,
+            bad,
+        } = self;
+        text.clear();
+        (*answered, *bad) = (0, 0);
+        for (number, &line) in (first..).zip(lines) {
+            // Some programs start a text with a byte order mark.
+            let line = without_mark(line);
+            if line.trim_ascii().is_empty() {
+                continue;
+            }
+            let begin = text.len();
+            let result = if line.len() > MAX_LINE {
+                Err(format!("longer than 1 MiB, the limit for a {noun}"))
+            } else {
+                answer(line, text)
+            };
+            if let Err(message) = result {
+                *bad += 1;
+                text.truncate(begin);
+                let error = format!("line {number}: {message}");
+                json::extend_ascii(text, &serde_json::json!({ "error": error }));
+            }
+            *answered += 1;
+            text.push(b'\n');
         }
-        let begin = text.len();
-        let result = if line.len() > MAX_LINE {
-            Err(format!("longer than 1 MiB, the limit for a {noun}"))
-        } else {
-            answer(line, text)
-        };
-        if let Err(message) = result {
-            answers.bad += 1;
-            text.truncate(begin);
-            let error = format!("line {number}: {message}");
-            json::extend_ascii(text, &serde_json::json!({ "error": error }));
-        }
-        answers.answered += 1;
-        text.push(b'\n');
     }
-    answers
 }
