@@ -32,7 +32,7 @@ pub(crate) struct Figure {
     #[arg(value_name = "KIND", value_parser = one_of::<FigureKind, _>(FigureKind::names()))]
     kind: FigureKind,
     #[command(flatten)]
-    figure: FigureFlags,
+    values: FigureFlags,
     #[command(flatten)]
     sensor: SensorFlags,
     #[command(flatten)]
@@ -45,7 +45,7 @@ pub(crate) struct Figure {
 impl Figure {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
         let sensor = self.sensor.sensor(cx.settings.sensor())?;
-        let figure = Source::Figure(self.figure.figure(self.kind, &sensor)?);
+        let figure = Source::Figure(self.values.figure(self.kind, &sensor)?);
         let pitch = self.sensor.pitch(&cx.settings)?.of(Some(&sensor));
         touch(
             &figure,

@@ -34,7 +34,7 @@ pub(crate) struct Picture {
     #[arg(value_name = "NAME|FILE", value_parser = name_or_path())]
     what: OsString,
     #[command(flatten)]
-    picture: PictureFlags,
+    values: PictureFlags,
     #[command(flatten)]
     sensor: OwnSensorFlags,
     #[command(flatten)]
@@ -47,7 +47,7 @@ pub(crate) struct Picture {
 impl Picture {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
         let kept = self.keep.kept(self.json)?;
-        let (picture, sensor) = moved(&self.what, &self.picture, &self.sensor, &cx.shelf)?;
+        let (picture, sensor) = moved(&self.what, &self.values, &self.sensor, &cx.shelf)?;
         let pitch = self.sensor.pitch(&cx.settings)?.of(Some(&sensor));
         touch(&picture, sensor, pitch, self.json, &kept, cx)
     }

@@ -13,7 +13,7 @@ use taxel_files::formats::value::grouped;
 
 use crate::cli::output::charset::Charset;
 
-const BAR: u64 = 40;
+const BAR: usize = 40;
 
 const CLEAR: &str = "\r\x1b[K";
 
@@ -52,7 +52,12 @@ impl ProgressDisplay {
         }
     }
 
-    #[expect(clippy::cast_precision_loss, reason = "for reading")]
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "for reading, and the bar is short"
+    )]
     fn line(&self, done: u64, elapsed: Duration) -> String {
         let (seconds, share) = (elapsed.as_secs_f64(), done as f64 / self.all as f64);
         let (percent, left) = (share * 100.0, seconds * (1.0 / share - 1.0));
@@ -61,8 +66,8 @@ impl ProgressDisplay {
             let (done, all) = (grouped(done), grouped(self.all));
             return format!("{done} of {all} {noun}, {percent:.0} %, {left:.0} s left\n");
         };
-        let length = (done * BAR / self.all.max(1)).min(BAR) as usize;
-        let bar = full.repeat(length) + &empty.repeat(BAR as usize - length);
+        let length = (BAR as f64 * share.min(1.0)) as usize;
+        let bar = full.repeat(length) + &empty.repeat(BAR - length);
         let rate = done as f64 / seconds;
         format!("{CLEAR}{bar} {percent:.0} %  {rate:.0} {noun}/s  {left:.0} s left")
     }
