@@ -8,7 +8,7 @@
 //!
 //! The arrows move the cursor, not `hjkl`: `l` is Load, as in the paper's menu.
 
-#[expect(clippy::wildcard_imports, reason = "the table has all of them")]
+#[allow(clippy::wildcard_imports, reason = "the table has all of them")]
 use crate::tui::keys::action::*;
 use crate::tui::keys::keymap::Context;
 
