@@ -92,12 +92,12 @@ fn perform(arguments: Vec<OsString>) -> Result<(), Failure> {
     }
     let is_library_named = global.library.is_some();
     settings.library = global.library.or(settings.library);
-    let charset = settings.charset.made().unwrap_or(Charset::current());
-    charset.set();
+    if let Some(charset) = settings.charset.made() {
+        charset.set();
+    }
     let cx = Context {
         shelf: Shelf::new(settings.library.clone(), is_library_named),
         settings,
-        charset,
     };
     match program.command {
         Some(command) => command.run(&cx),
@@ -110,13 +110,12 @@ fn perform(arguments: Vec<OsString>) -> Result<(), Failure> {
 pub(crate) struct Context {
     pub(crate) settings: Settings,
     pub(crate) shelf: Shelf,
-    pub(crate) charset: Charset,
 }
 
 impl Context {
     /// Prints lines of text to standard output.
     pub(crate) fn print(&self, text: &str) -> Result<(), Failure> {
-        self.write(self.charset.lines(text).as_bytes())
+        self.write(Charset::current().lines(text).as_bytes())
     }
 
     pub(crate) fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
@@ -125,7 +124,7 @@ impl Context {
 
     /// Writes a line to standard error. If it cannot be written, it is dropped: it is not part of the answer.
     pub(crate) fn note(&self, text: &str) {
-        output::charset::note(text, self.charset);
+        output::charset::note(text);
     }
 }
 

@@ -8,7 +8,6 @@ use crate::cli::Context;
 use crate::cli::arguments::flags::name_or_path;
 use crate::cli::arguments::parameters::PitchFlag;
 use crate::cli::failure::Failure;
-use crate::cli::output::charset::Charset;
 use crate::cli::output::report;
 use crate::cli::settings::Pitch;
 
@@ -44,13 +43,13 @@ impl Describe {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
         let pitch = self.pitch.pitch(&cx.settings)?;
         let content = cx.shelf.find(&self.what)?;
-        cx.print(&described(&content, self.json, pitch, cx.charset))
+        cx.print(&described(&content, self.json, pitch))
     }
 }
 
 /// Returns one line of JSON, or the matrix and a table of its regions. For a stored shape, its name, source and sensor
 /// come before the table.
-pub(crate) fn described(content: &Content, json: bool, pitch: Pitch, charset: Charset) -> String {
+pub(crate) fn described(content: &Content, json: bool, pitch: Pitch) -> String {
     let imprint = content.imprint();
     if json {
         return report::json(imprint);
@@ -67,5 +66,5 @@ pub(crate) fn described(content: &Content, json: bool, pitch: Pitch, charset: Ch
     }
     let pitch = pitch.of(own);
     made.push(report::size(imprint, own, pitch));
-    report::table(imprint, &made, pitch, charset)
+    report::table(imprint, &made, pitch)
 }

@@ -83,7 +83,7 @@ pub(crate) fn touch(
     if instead.is_none() && !json {
         notes.insert(beyond, report::size(&imprint, Some(&sensor), pitch));
         notes.insert(0, made);
-        return cx.print(&report::table(&imprint, &notes, pitch, cx.charset));
+        return cx.print(&report::table(&imprint, &notes, pitch));
     }
     cx.write(&instead.unwrap_or_else(|| report::json(&imprint).into_bytes()))?;
     for note in &notes {

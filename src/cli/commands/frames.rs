@@ -37,6 +37,7 @@ use crate::cli::commands::frame_flags::FrameFlags;
 use crate::cli::commands::recognise::{Namer, NamingFlags};
 use crate::cli::failure::Failure;
 use crate::cli::input::recording::{RecordingFile, damaged, noted, refused};
+use crate::cli::output::charset::Charset;
 use crate::cli::output::plot::heat_map;
 use crate::cli::output::report;
 use crate::frames::{Pipeline, Taring};
@@ -175,9 +176,7 @@ impl Frames {
         let mask = pipeline.processing.view.mask.as_ref();
         let found = self.naming.find(mask, &cx.shelf)?;
         let recording = RecordingFile::open(&self.file, self.reading.reading())?;
-        let namer = found
-            .map(|found| found.ready(false, cx.charset))
-            .transpose()?;
+        let namer = found.map(|found| found.ready(false)).transpose()?;
         let answering = Answering {
             asked: &self,
             cx,
@@ -565,7 +564,9 @@ impl Answering<'_> {
             lines.push(String::new());
             lines.extend(channel.lines());
         }
-        let lines = lines.iter().map(|line| self.cx.charset.line(line) + "\n");
+        let lines = lines
+            .iter()
+            .map(|line| Charset::current().line(line) + "\n");
         self.write(lines.collect::<String>())
     }
 
@@ -739,7 +740,6 @@ impl Answering<'_> {
         if let Some(content) = kept.keep(drawn, shape, &self.cx.shelf, &mut lines)? {
             return self.write(content);
         }
-        let charset = self.cx.charset;
         if self.asked.json {
             for note in &lines[titles.len()..] {
                 self.cx.note(note);
@@ -753,14 +753,15 @@ impl Answering<'_> {
         }
         let mut text = if again { "\n" } else { "" }.to_owned();
         if let Some(values) = heat {
-            text += &heat_map(values, &charset.line(&unit(info)), charset);
+            text += &heat_map(
+                values,
+                &Charset::current().line(&unit(info)),
+                Charset::current(),
+            );
             text.push('\n');
         }
-        text += &report::table(&imprint, &lines, pitch, charset);
-        let named = self
-            .namer
-            .as_ref()
-            .map(|namer| namer.text(&imprint, charset));
+        text += &report::table(&imprint, &lines, pitch);
+        let named = self.namer.as_ref().map(|namer| namer.text(&imprint));
         if let Some(named) = named.filter(|named| !named.is_empty()) {
             text.push('\n');
             text += &named;
@@ -856,7 +857,7 @@ impl Answering<'_> {
             self.write(json::text(&NoiseJson::of(&found)) + "\n")?;
         } else {
             let said = said.map_or(String::new(), |said| said + "\n");
-            let text = self.cx.charset.lines(&(said + &noise_text(&found)));
+            let text = Charset::current().lines(&(said + &noise_text(&found)));
             self.write(text)?;
         }
         Ok(true)

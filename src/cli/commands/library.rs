@@ -19,6 +19,7 @@ use crate::cli::arguments::parameters::PitchFlag;
 use crate::cli::commands::describe::described;
 use crate::cli::commands::export;
 use crate::cli::failure::Failure;
+use crate::cli::output::charset::Charset;
 
 const EXAMPLES: &str = "\
 A library is a folder with one JSON file per shape. The shapes that come with
@@ -165,7 +166,7 @@ impl List {
             return cx.print(&(json::ascii(&lines) + "\n"));
         }
         let names = iter::once("name").chain(lines.iter().map(|line| &*line.name));
-        let names = cx.charset.column(names);
+        let names = Charset::current().column(names);
         let mut text = format!("{}  origin      size   NA  pieces  holes\n", names[0]);
         for (line, name) in lines.iter().zip(&names[1..]) {
             text += &format!("{name}  {:<7}  ", line.origin);
@@ -181,7 +182,7 @@ impl List {
                     let size = format!("{columns} × {rows}");
                     format!("{size:>7} {na:>4}  {pieces:>6}  {holes:>5}\n")
                 }
-                Found::Broken { error } => format!("{}\n", cx.charset.line(error)),
+                Found::Broken { error } => format!("{}\n", Charset::current().line(error)),
             };
         }
         cx.print(&text)
@@ -216,7 +217,7 @@ impl Show {
         let loaded = cx.shelf.readable().load(self.name.as_str());
         let shape = loaded.map_err(|error| cx.shelf.refused(error))?.shape;
         let content = Content::Shape(shape);
-        cx.print(&described(&content, self.json, pitch, cx.charset))
+        cx.print(&described(&content, self.json, pitch))
     }
 }
 
@@ -289,7 +290,7 @@ impl Delete {
         let restore = cx.shelf.library_command("restore");
         let restore = restore.map(|words| format!("{words} {dashes}{}", as_argument(&name)));
         // A command whose characters are escaped cannot be typed.
-        let hint = restore.filter(|restore| cx.charset.line(restore) == *restore);
+        let hint = restore.filter(|restore| Charset::current().line(restore) == *restore);
         let hint = hint.map_or(String::new(), |hint| format!("; to restore it: {hint}"));
         cx.print(&format!("deleted {name}{hint}\n"))
     }
@@ -332,7 +333,10 @@ fn path(cx: &Context) -> Result<(), Failure> {
         .map_err(|error| cx.shelf.refused(error))?;
     let folder = library.folder();
     if io::stdout().is_terminal() {
-        return cx.print(&format!("{}\n", cx.charset.line(&folder.to_string_lossy())));
+        return cx.print(&format!(
+            "{}\n",
+            Charset::current().line(&folder.to_string_lossy())
+        ));
     }
     cx.write(&[folder.as_os_str().as_encoded_bytes(), b"\n"].concat())
 }
@@ -414,8 +418,8 @@ impl Check {
         } else {
             for found in &findings {
                 let place = found.name.as_ref().or(found.path.as_ref());
-                let place = cx.charset.line(place.map_or("", String::as_str));
-                let (what, reason) = (found.kind, cx.charset.line(&found.reason));
+                let place = Charset::current().line(place.map_or("", String::as_str));
+                let (what, reason) = (found.kind, Charset::current().line(&found.reason));
                 cx.print(&format!("{what}: {place}: {reason}\n"))?;
             }
         }

@@ -90,7 +90,7 @@ impl Merge {
                 memory.check().map_err(Failure::new)?;
             }
             let result = merge.finish()?;
-            let text = sweep_summary::of(&result, start.elapsed(), self.json, cx.charset);
+            let text = sweep_summary::of(&result, start.elapsed(), self.json);
             let file = write_atlas(&self.out, &result, existing);
             (text, file.and_then(|file| file.persist().map(drop)))
         };

@@ -33,7 +33,6 @@ use crate::cli::input::content::Input;
 use crate::cli::input::lines::{self, MAX_LINE};
 use crate::cli::input::shapes::{Located, Shelf};
 use crate::cli::output::answer::{PoseReport, Recognition};
-use crate::cli::output::charset::Charset;
 
 const EXAMPLES: &str = r#"Reads an imprint in any format that 'taxel describe' reads, or lines of JSON:
   {"imprint":["..##",...]}              one touch
@@ -137,9 +136,9 @@ pub(crate) struct FoundNamer(FoundModel, Option<Noise>);
 
 impl FoundNamer {
     /// Trains a built-in model that is not in the cache; this may take some seconds.
-    pub(crate) fn ready(self, quiet: bool, charset: Charset) -> Result<Namer, Failure> {
+    pub(crate) fn ready(self, quiet: bool) -> Result<Namer, Failure> {
         Ok(Namer {
-            model: model::ready(self.0, quiet, charset)?,
+            model: model::ready(self.0, quiet)?,
             noise: self.1,
             reject: None,
             top: None,
@@ -231,11 +230,11 @@ impl Namer {
     }
 
     /// The answer to an imprint in words; empty if no taxel is active.
-    pub(crate) fn text(&self, imprint: &Imprint, charset: Charset) -> String {
+    pub(crate) fn text(&self, imprint: &Imprint) -> String {
         if imprint.is_empty() {
             return String::new();
         }
-        self.answer(&[*imprint]).text(imprint, charset)
+        self.answer(&[*imprint]).text(imprint)
     }
 }
 
@@ -267,7 +266,7 @@ impl Recognise {
             top: self.top.map(wide),
             asks_pose: self.pose,
             pitch_mm,
-            ..FoundNamer(found, noise).ready(false, cx.charset)?
+            ..FoundNamer(found, noise).ready(false)?
         };
         match input {
             Question::Touch(content) => self.answer_imprint(&content, &namer, cx),
@@ -321,7 +320,7 @@ impl Recognise {
         cx.print(&if self.json {
             json::ascii(&named) + "\n"
         } else {
-            named.text(touch, cx.charset)
+            named.text(touch)
         })?;
         if self.is_expected(&named) {
             return Ok(());

@@ -89,7 +89,7 @@ pub(crate) fn open(
         // A locale that is not UTF-8 means ASCII; a UTF-8 locale tells nothing about the terminal's font.
         ascii: match settings.charset {
             Choice::Made(charset) => Some(charset == Charset::Ascii),
-            Choice::Auto => (cx.charset == Charset::Ascii).then_some(true),
+            Choice::Auto => (Charset::current() == Charset::Ascii).then_some(true),
         },
         no_mouse: !settings.mouse,
         size,

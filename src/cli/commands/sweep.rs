@@ -117,7 +117,7 @@ impl Sweep {
         let new = |path| PoseFile::new(path, &grid, existing);
         let mut poses = self.poses.as_ref().map(new).transpose()?;
         let shard = self.shard.unwrap_or(Shard::WHOLE);
-        let display = ProgressDisplay::new(shard.poses(&grid), self.quiet, cx.charset);
+        let display = ProgressDisplay::new(shard.poses(&grid), self.quiet);
         let result = memory.limit(&signals.progress(&display), |progress| {
             let sweep = Sweeping::new(&grid)
                 .with_shard(shard)
@@ -141,7 +141,7 @@ impl Sweep {
         }
         // The work is not lost if its files cannot be written.
         let took = start.elapsed();
-        cx.write(sweep_summary::of(&result, took, self.json, cx.charset).as_bytes())?;
+        cx.write(sweep_summary::of(&result, took, self.json).as_bytes())?;
         done?;
         let files = self.atlas.iter().chain(&self.poses);
         for path in files.filter(|_| !self.quiet) {

@@ -45,7 +45,6 @@ use crate::cli::commands::recognise::{FoundNamer, Namer, NamingFlags};
 use crate::cli::commands::screen::{self, Look};
 use crate::cli::failure::{Failure, Named};
 use crate::cli::input::recording::{RecordingFile, damaged, noted, refused};
-use crate::cli::output::charset::Charset;
 use crate::cli::signals::Signals;
 use crate::frames::recording::Recording;
 use crate::frames::{Pipeline, Taring, WatchRequest};
@@ -623,7 +622,7 @@ impl LineWriter {
     fn start(stopped: &Arc<AtomicBool>, namer: Option<FoundNamer>) -> Result<Self, Failure> {
         let (lines, waiting) = sync_channel(WAITING);
         let thread = std::thread::Builder::new().spawn(move || {
-            let namer = namer.map(|found| found.ready(true, Charset::Ascii));
+            let namer = namer.map(|found| found.ready(true));
             Ok(write_lines(&waiting, namer.transpose()?.as_ref()))
         });
         Ok(Self {

@@ -96,7 +96,7 @@ impl Recognition<'_> {
     ///   ..##-...
     ///   # both   + only in the touch   - only in the nearest imprint
     /// ```
-    pub(crate) fn text(&self, touch: &Imprint, charset: Charset) -> String {
+    pub(crate) fn text(&self, touch: &Imprint) -> String {
         let answer = &self.answer;
         let mut text = self.verdict(touch) + "\n";
         // If no imprint of the model fits on the matrix, nothing was compared.
@@ -118,9 +118,9 @@ impl Recognition<'_> {
         }
         let top = self.top.unwrap_or(SHOWN);
         let shown = answer.ranking.iter().take(top);
-        let names = charset.column(shown.clone().map(|&(shape, _)| self.name(shape)));
+        let names = Charset::current().column(shown.clone().map(|&(shape, _)| self.name(shape)));
         for (name, &(_, probability)) in names.iter().zip(shown) {
-            let (bar, percent) = (bar(probability, BAR, charset), percent(probability));
+            let (bar, percent) = (bar(probability, BAR), percent(probability));
             text += &format!("  {name}  {bar:<BAR$}  {percent:>7}\n");
         }
         if answer.ranking.len() > top {
@@ -130,11 +130,11 @@ impl Recognition<'_> {
             text += &self.differences(touch, nearest);
         }
         let pose = match &self.pose {
-            Some(pose) => pose.text(touch, charset),
+            Some(pose) => pose.text(touch),
             None if self.asks_pose => "no pose of the model is known for this imprint\n".to_owned(),
             None => String::new(),
         };
-        charset.lines(&text) + &pose
+        Charset::current().lines(&text) + &pose
     }
 
     pub(crate) fn name(&self, shape: usize) -> &str {
@@ -253,7 +253,7 @@ impl PoseReport {
         }
     }
 
-    fn text(&self, touch: &Imprint, charset: Charset) -> String {
+    fn text(&self, touch: &Imprint) -> String {
         let estimate = &self.estimate;
         let mut text = format!("centre {} cells", value::pose_centre(estimate, 1.0));
         if let Some(pitch) = self.pitch_mm {
@@ -263,11 +263,11 @@ impl PoseReport {
             None => "; it looks the same at every angle\n".to_owned(),
             Some(angle) => format!("\n{}\n", angle_in_words(angle, estimate.poses)),
         };
-        charset.lines(&text) + &self.drawn(touch, charset)
+        Charset::current().lines(&text) + &self.drawn(touch)
     }
 
     /// Draws the outline over the touch.
-    fn drawn(&self, touch: &Imprint, charset: Charset) -> String {
+    fn drawn(&self, touch: &Imprint) -> String {
         let (columns, lines) = (u16::from(touch.columns()), u16::from(touch.rows()));
         let mut outline = Outline {
             canvas: DotCanvas::new(2 * columns, lines),
@@ -277,14 +277,14 @@ impl PoseReport {
             outline.by = placed.by;
             placed.source.draw(&mut outline);
         }
-        let (full, empty) = charset.taxels();
+        let (full, empty) = Charset::current().taxels();
         let mut rows = Vec::new();
         for row in 0..touch.rows() {
             let taxel = |column| if touch.get(column, row) { full } else { empty };
             let taxels = (0..touch.columns()).flat_map(|column| taxel(column).chars());
             rows.push(taxels.collect::<Vec<char>>());
         }
-        draw_over(&mut rows, &outline.canvas, charset);
+        draw_over(&mut rows, &outline.canvas, Charset::current());
         let line = |row: Vec<char>| format!("  {}\n", row.iter().collect::<String>().trim_end());
         rows.into_iter().map(line).collect()
     }

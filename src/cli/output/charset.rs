@@ -119,8 +119,8 @@ impl Charset {
 }
 
 /// Writes a note to standard error. If it cannot be written, it is dropped: it is not part of the answer.
-pub(crate) fn note(text: &str, charset: Charset) {
-    let _ = writeln!(io::stderr().lock(), "{}", charset.line(text));
+pub(crate) fn note(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{}", Charset::current().line(text));
 }
 
 #[cfg(test)]

@@ -5,7 +5,6 @@ use taxel_core::parameter::number::share;
 use taxel_core::recognition::{ClassifierEvaluation, ConfusionMatrix, Evaluation};
 use taxel_files::formats::value::{counted, grouped, percent};
 
-use crate::cli::output::charset::Charset;
 use crate::cli::output::table::{row, table};
 
 /// A count in JSON: a number, or a text if it is beyond 64 bits, as weights may cause.
@@ -122,7 +121,7 @@ pub(crate) fn summary(own: &Evaluation, named: NamedBy) -> String {
         "the first of the tied shapes is named",
     ));
     rows.push(row("in top two", own.right_in_top_two, ""));
-    text += &table(&rows, &[0, 3], Charset::Ascii);
+    text += &table(&rows, &[0, 3]);
     let (bits, of) = (own.information_bits, own.prior_bits);
     text + &format!("information  {bits:.4} of {of:.4} bits\n")
 }

@@ -30,15 +30,17 @@ pub(crate) struct ProgressDisplay {
 }
 
 impl ProgressDisplay {
-    pub(crate) fn new(all: u64, quiet: bool, charset: Charset) -> Self {
-        Self::counting("poses", all, quiet, charset)
+    pub(crate) fn new(all: u64, quiet: bool) -> Self {
+        Self::counting("poses", all, quiet)
     }
 
-    pub(crate) fn counting(noun: &'static str, all: u64, quiet: bool, charset: Charset) -> Self {
-        let bar = io::stderr().is_terminal().then_some(match charset {
-            Charset::Ascii => ["#", "-"],
-            Charset::Unicode => ["█", "░"],
-        });
+    pub(crate) fn counting(noun: &'static str, all: u64, quiet: bool) -> Self {
+        let bar = io::stderr()
+            .is_terminal()
+            .then_some(match Charset::current() {
+                Charset::Ascii => ["#", "-"],
+                Charset::Unicode => ["█", "░"],
+            });
         let pause = Duration::from_millis(if bar.is_some() { 100 } else { 10_000 });
         let start = Instant::now();
         Self {
@@ -106,7 +108,7 @@ mod tests {
 
     #[test]
     fn a_line_tells_what_is_left() {
-        let mut progress = ProgressDisplay::new(1000, true, Charset::Ascii);
+        let mut progress = ProgressDisplay::new(1000, true);
         let elapsed = Duration::from_secs(10);
         progress.bar = None;
         let line = progress.line(250, elapsed);

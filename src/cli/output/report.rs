@@ -54,13 +54,8 @@ pub(crate) fn size(imprint: &Imprint, sensor: Option<&Sensor>, pitch: Option<f64
 }
 
 /// Returns the whole report: the matrix, the lines `made` about its source, and the table of its regions.
-pub(crate) fn table(
-    imprint: &Imprint,
-    made: &[String],
-    pitch: Option<f64>,
-    charset: Charset,
-) -> String {
-    let (active, inactive) = charset.taxels();
+pub(crate) fn table(imprint: &Imprint, made: &[String], pitch: Option<f64>) -> String {
+    let (active, inactive) = Charset::current().taxels();
     let taxel = |column, row| {
         if imprint.get(column, row) {
             active
@@ -70,7 +65,7 @@ pub(crate) fn table(
     };
     let mut text = ruled(imprint.size(), taxel) + "\n";
     for line in made {
-        text += &charset.line(line);
+        text += &Charset::current().line(line);
         text.push('\n');
     }
     text.push('\n');
@@ -78,7 +73,7 @@ pub(crate) fn table(
     if regions.is_empty() {
         return text + "no active taxels, so no regions to describe\n";
     }
-    text + &region_table(&regions, pitch, charset)
+    text + &region_table(&regions, pitch)
 }
 
 /// Draws a matrix with the numbers of its columns and rows. A cell takes two characters.
@@ -128,7 +123,7 @@ fn table_rows(pitch: Option<f64>, holes: bool) -> Vec<Row> {
 }
 
 /// Returns the table: a row for each descriptor, a column for each region with a heading such as `hole 2`.
-fn region_table(regions: &[Description], pitch: Option<f64>, charset: Charset) -> String {
+fn region_table(regions: &[Description], pitch: Option<f64>) -> String {
     let holes = regions.iter().any(|it| it.kind == RegionKind::Hole);
     let rows = table_rows(pitch, holes);
     let labels: Vec<String> = rows.iter().map(|row| row.0.clone()).collect();
@@ -156,7 +151,7 @@ fn region_table(regions: &[Description], pitch: Option<f64>, charset: Charset) -
             iter::once(label.clone()).chain(cells).collect()
         };
         let rows: Vec<Vec<String>> = labels.iter().enumerate().map(row).collect();
-        table::table(&rows, &[0], charset)
+        table::table(&rows, &[0])
     };
     let blocks: Vec<String> = columns.chunks(most.max(1)).map(block).collect();
     blocks.join("\n")
@@ -169,7 +164,7 @@ mod tests {
     #[test]
     fn a_table_of_many_regions_continues_below() {
         let imprint: Imprint = "#.#.#.#\n.......\n#.#.#.#".parse().expect("rows");
-        let text = table(&imprint, &[], Some(2.5), Charset::Unicode);
+        let text = table(&imprint, &[], Some(2.5));
         assert!(text.lines().all(|line| line.chars().count() <= WIDTH));
         for index in 1..=8 {
             assert_eq!(text.matches(&format!("exterior {index}")).count(), 1);

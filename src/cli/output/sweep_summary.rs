@@ -37,11 +37,11 @@ struct SummaryJson<'a> {
 }
 
 /// Returns the summary: for people, or as a line of JSON.
-pub(crate) fn of(result: &SweepResult, took: Duration, as_json: bool, charset: Charset) -> String {
+pub(crate) fn of(result: &SweepResult, took: Duration, as_json: bool) -> String {
     if as_json {
         return json(result, took);
     }
-    text(result, took, charset)
+    text(result, took)
 }
 
 fn json(result: &SweepResult, took: Duration) -> String {
@@ -68,7 +68,7 @@ fn json(result: &SweepResult, took: Duration) -> String {
     json::text(&summary) + "\n"
 }
 
-fn text(result: &SweepResult, took: Duration, charset: Charset) -> String {
+fn text(result: &SweepResult, took: Duration) -> String {
     let SweepResult { grid, atlas, .. } = result;
     let part = match result.shard.of() {
         1 => String::new(),
@@ -102,7 +102,7 @@ fn text(result: &SweepResult, took: Duration, charset: Charset) -> String {
         });
         iter::once(row.feature.key.clone()).chain(values).collect()
     }));
-    charset.lines(&text) + &table(&rows, &[0], charset)
+    Charset::current().lines(&text) + &table(&rows, &[0])
 }
 
 pub(crate) fn ranges_in_words(axes: impl Iterator<Item = Axis>, ranges: &Ranges) -> String {

@@ -14,9 +14,9 @@ pub(crate) fn row<const N: usize>(cells: [&str; N]) -> Vec<String> {
 
 /// Lines of cells in columns two spaces apart. Cells end on the right of their column, or begin on its left where
 /// `left` has its number.
-pub(crate) fn table(rows: &[Vec<String>], left: &[usize], charset: Charset) -> String {
+pub(crate) fn table(rows: &[Vec<String>], left: &[usize]) -> String {
     let cells = rows.iter().map(|row| {
-        let cells = row.iter().map(|cell| charset.line(cell));
+        let cells = row.iter().map(|cell| Charset::current().line(cell));
         cells.collect::<Vec<_>>()
     });
     let cells: Vec<_> = cells.collect();
@@ -79,8 +79,8 @@ pub(crate) fn csv(records: &[Record]) -> String {
     clippy::cast_precision_loss,
     reason = "a share is from 0 to 1, a width that of a terminal"
 )]
-pub(crate) fn bar(share: f64, width: usize, charset: Charset) -> String {
-    let full = match charset {
+pub(crate) fn bar(share: f64, width: usize) -> String {
+    let full = match Charset::current() {
         Charset::Ascii => "#",
         Charset::Unicode => "█",
     };

@@ -25,7 +25,6 @@ use crate::cli::arguments::flags::{name_or_path, whole};
 use crate::cli::commands::model::noise::NoiseFlags;
 use crate::cli::commands::model::{Table, TableFlags, find, fits_in_table, ready, watched};
 use crate::cli::failure::{Failure, Named};
-use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{Count, EvaluationJson, NamedBy, summary};
 use crate::cli::output::table::{Record, row, table};
 
@@ -118,17 +117,17 @@ impl Confusion {
         self.check()?;
         let found = find(&self.model, &cx.shelf)?;
         self.check_model(&found)?;
-        let model = ready(found, self.table.quiet, cx.charset)?;
+        let model = ready(found, self.table.quiet)?;
         if let Some(noise) = self.noise.noise {
             let rates = self.noise.rates(noise, &model, &self, cx)?;
             self.table.give(&rates, cx)
         } else if self.greedy {
-            cx.print(&self.chosen(&model, cx.charset))
+            cx.print(&self.chosen(&model))
         } else if self.pairs {
-            cx.print(&self.paired(&model, cx.charset))
+            cx.print(&self.paired(&model))
         } else if let Some(name) = &self.classifier {
             let limit = Evaluation::of(&model);
-            let reached = |classifier| self.reached(classifier, &model, cx);
+            let reached = |classifier| self.reached(classifier, &model);
             if let Ok(classifier) = name.parse() {
                 let reached = reached(classifier)?;
                 let (own, named) = (&reached.evaluation, NamedBy::Classifier);
@@ -212,7 +211,6 @@ impl Confusion {
         &self,
         classifier: Classifier,
         model: &Model,
-        cx: &Context,
     ) -> Result<ClassifierEvaluation, Failure> {
         let usual = ClassifierSettings::default();
         let settings = ClassifierSettings {
@@ -223,13 +221,13 @@ impl Confusion {
             seed: self.seed.unwrap_or(usual.seed),
         };
         let all = (model.keys().len() as u64, "imprints");
-        watched(all, self.table.quiet, cx, |progress| {
+        watched(all, self.table.quiet, |progress| {
             classifier.evaluate(model, &settings, progress)
         })
     }
 
     /// The error falls from row to row, at best to that of the whole imprint; `values` are the distinct combinations.
-    fn chosen(&self, model: &Model, charset: Charset) -> String {
+    fn chosen(&self, model: &Model) -> String {
         let chosen = model.choose_descriptors(&self.round);
         let limit = Evaluation::of(model);
         if self.table.json {
@@ -253,11 +251,11 @@ impl Confusion {
             rows.push(cells(&name, &step.evaluation));
         }
         rows.push(cells("limit: the whole imprint", &limit));
-        table(&rows, &[0], charset)
+        table(&rows, &[0])
     }
 
     /// The matrix is symmetric: each entry is the error of the best classifier if there were only these two shapes.
-    fn paired(&self, model: &Model, charset: Charset) -> String {
+    fn paired(&self, model: &Model) -> String {
         let errors = model.pair_errors();
         let names = model.shapes().iter().map(|shape| shape.name.clone());
         let labels: Vec<String> = names.collect();
@@ -269,7 +267,7 @@ impl Confusion {
             let error = (row != column).then(|| error(row, column));
             error.unwrap_or("–".to_owned())
         });
-        table(&rows, &[0], charset) + "errors in percent, for each pair alone\n"
+        table(&rows, &[0]) + "errors in percent, for each pair alone\n"
     }
 }
 
@@ -290,7 +288,7 @@ struct Matrix<'a>(&'a Evaluation, NamedBy, Option<&'a ClassifierEvaluation>);
 
 impl Table for Matrix<'_> {
     /// The matrix has the diagonal in brackets, zero as a dot, recall on the right, precision below.
-    fn text(&self, charset: Charset) -> String {
+    fn text(&self) -> String {
         let &Self(own, named, classifier) = self;
         let mut rows = square(&own.labels, |row, column| {
             match (own.confusion.get(row, column), row == column) {
@@ -309,7 +307,7 @@ impl Table for Matrix<'_> {
             precision.push(named_right.unwrap_or("– ".to_owned()));
         }
         rows.push(precision);
-        let mut text = summary(own, named) + "\n" + &table(&rows, &[0], charset);
+        let mut text = summary(own, named) + "\n" + &table(&rows, &[0]);
         let pairs = own.worst_pairs();
         let pairs = pairs.iter().take(3).map(|pair| {
             let [one, other] = [pair.one, pair.other].map(|shape| &own.labels[shape]);
@@ -393,14 +391,14 @@ impl Classifiers {
 }
 
 impl Table for Classifiers {
-    fn text(&self, charset: Charset) -> String {
+    fn text(&self) -> String {
         let mut rows = vec![row(["classifier", "error", "top two", "information"])];
         for (name, own, top_two) in self.rows() {
             let bits = format!("{:.3} bits", own.information_bits);
             rows.push(row([name, &percent(own.error()), &percent(top_two), &bits]));
         }
         let features = self.reached.first().map_or(String::new(), features);
-        table(&rows, &[0], charset) + &features + &sampled(&self.reached)
+        table(&rows, &[0]) + &features + &sampled(&self.reached)
     }
 
     fn records(&self) -> Vec<Record> {

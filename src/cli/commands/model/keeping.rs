@@ -20,6 +20,7 @@ use crate::cli::arguments::flags::name_or_path;
 use crate::cli::commands::model::train::grid_text;
 use crate::cli::commands::model::{find, folder, models, ready};
 use crate::cli::failure::Failure;
+use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, Count, NamedBy};
 
 const SHOW_EXAMPLES: &str = "\
@@ -46,7 +47,7 @@ impl Show {
         let model = match models.file(&choice) {
             // A shard, too, which answers no touches.
             Some(path) => load_model(&path)?,
-            None => ready(find(&self.model, &cx.shelf)?, false, cx.charset)?,
+            None => ready(find(&self.model, &cx.shelf)?, false)?,
         };
         let limit = Evaluation::of(&model);
         cx.print(&if self.json {
@@ -186,7 +187,7 @@ impl List {
                 let said = model.map_or_else(|error| error.to_string(), |model| in_short(&model));
                 format!("{name}: {said}")
             };
-            cx.print(&format!("{}\n", cx.charset.line(&line)))?;
+            cx.print(&format!("{}\n", Charset::current().line(&line)))?;
         }
         Ok(())
     }

@@ -26,7 +26,6 @@ use crate::cli::arguments::flags::{name_or_path, report};
 use crate::cli::commands::export::{replacing, written};
 use crate::cli::failure::{Failure, Named};
 use crate::cli::input::shapes::Shelf;
-use crate::cli::output::charset::Charset;
 use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::output::table::{Record, csv};
 use crate::cli::signals::{self, Signals};
@@ -110,7 +109,7 @@ pub(crate) struct TableFlags {
 
 /// An answer in its forms.
 trait Table {
-    fn text(&self, charset: Charset) -> String;
+    fn text(&self) -> String;
 
     /// The lines of the CSV.
     fn records(&self) -> Vec<Record> {
@@ -156,7 +155,7 @@ impl TableFlags {
         cx.print(&match (self.json, self.csv) {
             (true, _) => table.json(),
             (_, true) => table.csv(),
-            _ => table.text(cx.charset),
+            _ => table.text(),
         })
     }
 }
@@ -206,10 +205,10 @@ pub(crate) fn find(which: impl AsRef<OsStr>, shelf: &Shelf) -> Result<FoundModel
 
 /// Returns a model that was found. A built-in set that is not in the cache is trained, which takes some seconds.
 /// Signals are not caught meanwhile: nothing would have to be removed.
-pub(crate) fn ready(found: FoundModel, quiet: bool, charset: Charset) -> Result<Model, Failure> {
+pub(crate) fn ready(found: FoundModel, quiet: bool) -> Result<Model, Failure> {
     found.ready(|training| {
         let advice = "train a model of fewer shapes or coarser steps (taxel model train)";
-        let display = ProgressDisplay::new(training.poses(), quiet, charset);
+        let display = ProgressDisplay::new(training.poses(), quiet);
         let model = MemoryGuard::new(None, advice)
             .limit(&display, |progress| training.with_progress(progress).run());
         Ok(model.map_err(Failure::new)??)
@@ -220,11 +219,10 @@ pub(crate) fn ready(found: FoundModel, quiet: bool, charset: Charset) -> Result<
 fn watched<T>(
     (all, noun): (u64, &'static str),
     quiet: bool,
-    cx: &Context,
     work: impl FnOnce(&dyn Progress) -> Option<T>,
 ) -> Result<T, Failure> {
     let signals = Signals::catch()?;
-    let display = ProgressDisplay::counting(noun, all, quiet, cx.charset);
+    let display = ProgressDisplay::counting(noun, all, quiet);
     let done = work(&signals.progress(&display));
     done.ok_or_else(|| signals.failure())
 }
@@ -233,12 +231,11 @@ fn watched<T>(
 fn trained<T: Send>(
     poses: u64,
     (jobs, memory, quiet): (Option<u16>, MemoryGuard, bool),
-    cx: &Context,
     work: impl FnOnce(&dyn Progress) -> Result<T, TrainingError> + Send,
 ) -> Result<T, Failure> {
     let signals = Signals::catch()?;
     let pool = signals::pool(jobs.map_or(0, usize::from))?;
-    let display = ProgressDisplay::new(poses, quiet, cx.charset);
+    let display = ProgressDisplay::new(poses, quiet);
     let done = memory.limit(&signals.progress(&display), |progress| {
         pool.install(|| work(progress))
     });

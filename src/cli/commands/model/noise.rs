@@ -105,7 +105,7 @@ impl NoiseFlags {
         let given = asked.known();
         let rows = noise.count() * self.dead.len() as u64;
         let all = each * model.shapes().len() as u64 * rows;
-        let rows = watched((all, "touches"), asked.table.quiet, cx, |progress| {
+        let rows = watched((all, "touches"), asked.table.quiet, |progress| {
             let mut rows = Vec::new();
             for &dead in &self.dead {
                 for value in noise.values() {
@@ -180,7 +180,7 @@ impl NoisyRates {
 }
 
 impl Table for NoisyRates {
-    fn text(&self, charset: Charset) -> String {
+    fn text(&self) -> String {
         const BAR: usize = 30;
         let mut rows = vec![row(["noise", "dead", "right", "held", "claimed"])];
         for (noise, dead, rate) in &self.rows {
@@ -191,16 +191,16 @@ impl Table for NoisyRates {
                 &format!("{right} ± {error:.1}"),
                 &percent(rate.held_share),
                 &percent(rate.mean_confidence),
-                &bar(rate.accuracy, BAR, charset),
+                &bar(rate.accuracy, BAR),
             ]));
         }
         let touches = self.rows.first().map_or(0, |(_, _, rate)| rate.touches);
         let (touches, seed) = (counted(touches, "touch"), self.seed);
-        let mut text = table(&rows, &[5], charset);
+        let mut text = table(&rows, &[5]);
         text += &format!("{touches} a row, seed {seed}\n{}", self.note);
         for (dead, points) in self.curves() {
             let dead = counted(dead, "dead taxel");
-            match plot::lines("right", "noise", &points, charset) {
+            match plot::lines("right", "noise", &points, Charset::current()) {
                 none if none.is_empty() => {}
                 curve => text += &format!("\n{dead}\n{curve}"),
             }
@@ -284,10 +284,10 @@ impl Touches {
     pub(super) fn run(self, cx: &Context) -> Result<(), Failure> {
         let (until, runs) = (self.until.unwrap_or(0.99), self.runs.unwrap_or(10_000));
         let seed = self.seed.unwrap_or_default();
-        let model = ready(find(&self.model, &cx.shelf)?, self.quiet, cx.charset)?;
+        let model = ready(find(&self.model, &cx.shelf)?, self.quiet)?;
         let shapes = model.shapes();
         let all = (runs * shapes.len() as u64, "runs");
-        let results = watched(all, self.quiet, cx, |progress| {
+        let results = watched(all, self.quiet, |progress| {
             model.touches_until(until, runs, seed, progress)
         })?;
         let weights: Vec<u32> = shapes.iter().map(|shape| shape.weight).collect();
@@ -311,7 +311,7 @@ impl Touches {
         let (until, runs) = (percent(until), counted(runs, "run"));
         let title =
             format!("touches until a shape is {until} probable; {runs} each, seed {seed}\n");
-        cx.print(&(title + &table(&rows, &[0, 2, 3], cx.charset)))
+        cx.print(&(title + &table(&rows, &[0, 2, 3])))
     }
 }
 

@@ -148,7 +148,7 @@ impl Separate {
         let points = (sizes.len() as u64 + more) * thresholds.len() as u64;
         let memory = MemoryGuard::new(None, "take fewer shapes, smaller sizes or coarser steps");
         let by = (self.jobs, memory, self.table.quiet);
-        let curves = trained(separation.touches() * points, by, cx, |progress| {
+        let curves = trained(separation.touches() * points, by, |progress| {
             let curve = |&threshold: &f64| {
                 let at = |&size: &f64| separation.at(axis, size, threshold, progress);
                 let points = sizes.iter().map(at).collect::<Result<Vec<_>, _>>()?;
@@ -196,7 +196,7 @@ impl Separate {
         let what = &self.set.what;
         let (mut separation, threshold) = match &what[..] {
             [model] if !self.set.library_all && is_model(model, cx) => {
-                let model = ready(find(model, &cx.shelf)?, self.table.quiet, cx.charset)?;
+                let model = ready(find(model, &cx.shelf)?, self.table.quiet)?;
                 let mut separation = Separation::new(model.shapes().to_vec())?;
                 separation.steps.angles = model.ranges()[Axis::Angle];
                 separation.steps.positions = positions_of(&model).unwrap_or(CellPositions::FINE);
@@ -340,7 +340,7 @@ impl Separated {
 }
 
 impl Table for Separated {
-    fn text(&self, charset: Charset) -> String {
+    fn text(&self) -> String {
         let name = self.axis.name();
         let titles = ["threshold", "error", "certain", "imprints", "sensor"];
         let [threshold, error, certain, imprints, sensor] = titles;
@@ -352,10 +352,10 @@ impl Table for Separated {
             let side = format!("{side} × {side}");
             rows.push(row([&size, &threshold, &error, &certain, &keys, &side]));
         }
-        let mut text = table(&rows, &[0], charset);
+        let mut text = table(&rows, &[0]);
         let (name, curves) = self.plotted();
         for (title, points) in &curves {
-            let curve = plot::lines("error", name, points, charset);
+            let curve = plot::lines("error", name, points, Charset::current());
             let title = if curves.len() > 1 { title } else { "" };
             text += &match (curve.is_empty(), title) {
                 (true, _) => curve,

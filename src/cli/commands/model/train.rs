@@ -21,6 +21,7 @@ use crate::cli::commands::model::keeping::card;
 use crate::cli::commands::model::{SetFlags, folder, model_file, positions, trained};
 use crate::cli::failure::Failure;
 use crate::cli::input::shapes;
+use crate::cli::output::charset::Charset;
 use crate::cli::output::charset::note;
 use crate::cli::output::evaluation::{self, NamedBy};
 use crate::cli::output::sweep_summary::ranges_in_words;
@@ -108,9 +109,9 @@ impl Train {
         }
         let memory = MemoryGuard::new(self.memory, TOO_LITTLE_MEMORY);
         let by = (self.jobs, memory, self.quiet);
-        let model = trained(training.poses(), by, cx, |progress| {
+        let model = trained(training.poses(), by, |progress| {
             if !self.quiet {
-                note(&grid_text(&sensor, anchor, &ranges), cx.charset);
+                note(&grid_text(&sensor, anchor, &ranges));
             }
             training.with_progress(progress).run()
         })?;
@@ -130,7 +131,7 @@ impl Train {
             json::ascii(&card) + "\n"
         } else {
             let file = file.filter(|_| !self.quiet);
-            let file = file.map(|file| format!("written: {}\n", cx.charset.line(&file)));
+            let file = file.map(|file| format!("written: {}\n", Charset::current().line(&file)));
             file.unwrap_or_default() + &evaluation::summary(&limit, NamedBy::Imprint)
         };
         cx.print(&text)?;
