@@ -305,3 +305,64 @@ fn circular_mean(known: &[(f64, f64)]) -> Option<f64> {
     let y = mean(known, |degrees| libm::sin(degrees.to_radians()))?;
     mean_direction(x, y)
 }
+
+#[cfg(test)]
+mod tests {
+    use taxel_core::atlas::features;
+    use taxel_core::figure::FigureKind;
+    use taxel_core::index::wide;
+
+    use super::*;
+    use crate::tui::explore::Findings;
+    use crate::tui::explore::results::tests::sweep;
+
+    fn found(y0: &str, angle: &str) -> Findings {
+        Findings::new(sweep(FigureKind::Rectangle, ["5:5.9:0.1", y0, angle]))
+    }
+
+    #[test]
+    fn each_angle_has_the_values_of_its_positions() {
+        let found = found("5:5.3:0.1", "0:80:20");
+        let curve = AngleCurve::of(&found.sweep, PoseIndex::new([0; 5]));
+        assert_eq!((curve.every_angle, curve.every_row), (1, 1));
+        for (number, feature) in features().iter().enumerate() {
+            let chosen = Chosen::new(&found, number);
+            let spread = curve.spread(&found.sweep, &chosen);
+            assert_eq!(spread.len(), 5, "{}", feature.key);
+            for at in spread {
+                let place = PoseIndex::new([0, 0, at.index, 0, 0]);
+                let ids = found.sweep.ids(place, 0..10, 0..4);
+                let own = ids.iter().filter_map(|id| chosen.values[wide((*id)?)]);
+                let own: Vec<f64> = own.collect();
+                assert_eq!(at.min.is_none(), feature.circular);
+                if let (Some(min), Some(max)) = (at.min, at.max) {
+                    assert!(own.iter().all(|value| (min..=max).contains(value)));
+                    let count = f64::from(u32::try_from(own.len()).expect("few"));
+                    let mean = own.iter().sum::<f64>() / count;
+                    assert!((at.mean - mean).abs() < 1e-9, "{}", feature.key);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn directions_have_a_circular_mean_unless_they_cancel() {
+        let west = circular_mean(&[(170.0, 1.0), (-170.0, 1.0)]).expect("a mean");
+        assert!((west.abs() - 180.0).abs() < 1e-9, "{west}");
+        let mean = circular_mean(&[(10.0, 3.0), (50.0, 0.0)]).expect("a mean");
+        assert!((mean - 10.0).abs() < 1e-9);
+        let thirds = [(-110.0, 700.0), (10.0, 700.0), (130.0, 700.0)];
+        assert_eq!(circular_mean(&[(90.0, 1.0), (-90.0, 1.0)]), None);
+        assert_eq!(circular_mean(&thirds), None);
+    }
+
+    #[test]
+    fn only_part_of_a_large_grid_is_visited() {
+        let found = found("5:5.99:0.01", "0:89.9:0.1");
+        let curve = AngleCurve::of(&found.sweep, PoseIndex::new([0; 5]));
+        assert_eq!((curve.every_angle, curve.every_row), (2, 6));
+        let spread = curve.spread(&found.sweep, &Chosen::new(&found, 0));
+        assert_eq!(spread.len(), 450);
+        assert_eq!((spread[1].index, spread[449].index), (2, 898));
+    }
+}

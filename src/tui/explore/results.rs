@@ -494,7 +494,7 @@ pub(super) mod tests {
 
     use super::*;
 
-    fn sweep(kind: FigureKind, ranges: [&str; 3]) -> SweepResult {
+    pub(in crate::tui::explore) fn sweep(kind: FigureKind, ranges: [&str; 3]) -> SweepResult {
         let [x0, y0, angle] = ranges.map(|text| text.parse().expect("a range"));
         let ranges = Ranges::default()
             .with(Axis::X0, x0)
