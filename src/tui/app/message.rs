@@ -87,7 +87,6 @@ pub enum Message {
     Live(LiveMessage),
     /// There are answers of jobs.
     Answered,
-    Refused(String),
     Unknown(Key),
     Redraw,
     /// Suspend the program, as Ctrl-Z does, until the shell continues it.

@@ -50,7 +50,6 @@ fn handle(app: &mut App, message: Message) {
         Message::Terminate => app.run_state = RunState::Terminated,
         Message::Unknown(key) => unknown(app, key),
         Message::Answered => {}
-        Message::Refused(reason) => refuse(app, reason),
         Message::Mouse(mouse) => {
             if let Some(meant) = mouse::act(app, mouse) {
                 handle(app, meant);

@@ -8,6 +8,8 @@
 //! In scripts and tests, the same closures run in place, and their answers are applied after the message, in order.
 //! A disk may hang: keys go on, the screen says what it waits for, and the end of the program does not wait for ever.
 
+mod disk;
+
 use std::collections::{HashMap, VecDeque};
 use std::fmt;
 use std::io;
@@ -15,7 +17,7 @@ use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, OnceLock};
 use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
@@ -35,6 +37,7 @@ use crate::tui::app::state::{App, Notice};
 use crate::tui::app::unsaved::UnsavedWork;
 use crate::tui::explore::work::SweepProgress;
 use crate::tui::files::WriteAccess;
+use crate::tui::jobs::disk::{Disk, DiskJob, DiskWork, UnsavedJournal};
 use crate::tui::live::source::Sources;
 
 /// What a job leaves to do, on the thread of the screen.
@@ -65,10 +68,6 @@ const PATIENCE: Duration = Duration::from_millis(1500);
 /// The longest wait for long work at the end: half-written files are removed, and models are written as a whole.
 const STOPPING: Duration = Duration::from_millis(400);
 const REPORTS: Duration = Duration::from_millis(100);
-/// Changes of unsaved work are gathered for this time, so a crash loses less than a second of work.
-const GATHER: Duration = Duration::from_millis(400);
-/// When work that could not be written is tried again: a full disk may have room by then.
-const RETRY: Duration = Duration::from_secs(5);
 
 enum Posted {
     Disk(Answer),
@@ -649,131 +648,6 @@ pub(crate) fn start(body: impl FnOnce() + Send + 'static) -> Result<JoinHandle<(
 pub(crate) fn wait_until_finished(thread: &JoinHandle<()>, end: Instant) {
     while !thread.is_finished() && Instant::now() < end {
         std::thread::sleep(Duration::from_millis(5));
-    }
-}
-
-type DiskJob = Box<dyn FnOnce(&Library) -> Answer + Send>;
-
-enum DiskWork {
-    Job(DiskJob),
-    /// Keep this work, and then remove what was taken over from other journals.
-    Keep(Vec<UnsavedWork>, Vec<Orphan>),
-    /// Write the journal now; the answer is whether everything is written.
-    Flush(Sender<bool>),
-}
-
-struct Disk {
-    library: Library,
-    /// None if no unsaved work is kept.
-    journal: Option<UnsavedJournal>,
-    post: Post,
-}
-
-impl Disk {
-    fn run(mut self, inbox: &Receiver<DiskWork>) {
-        loop {
-            let due = self.journal.as_ref().and_then(|journal| journal.due);
-            let work = match due {
-                Some(due) => inbox.recv_timeout(due.saturating_duration_since(Instant::now())),
-                None => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
-            };
-            match work {
-                Ok(work) => self.take(work),
-                Err(RecvTimeoutError::Timeout) => {
-                    self.write_journal();
-                }
-                Err(RecvTimeoutError::Disconnected) => {
-                    self.write_journal();
-                    return;
-                }
-            }
-        }
-    }
-
-    fn take(&mut self, work: DiskWork) {
-        match work {
-            DiskWork::Job(job) => {
-                // It may take long, and the program may die meanwhile.
-                self.write_journal();
-                let answer = caught(|| job(&self.library)).unwrap_or_else(refusal);
-                self.post.send(Posted::Disk(answer));
-            }
-            DiskWork::Keep(works, adopted) => {
-                // Nothing can be lost any more, or work must not be offered twice.
-                let at_once = works.is_empty() || !adopted.is_empty();
-                if let Some(journal) = &mut self.journal {
-                    journal.note(works, adopted);
-                }
-                if at_once {
-                    self.write_journal();
-                }
-            }
-            DiskWork::Flush(done) => {
-                let is_written = self.write_journal();
-                // The program may have stopped waiting.
-                let _ = done.send(is_written);
-            }
-        }
-    }
-
-    /// Returns true if the unsaved work is on the disk.
-    fn write_journal(&mut self) -> bool {
-        let journal = self.journal.as_mut();
-        journal.is_none_or(|journal| journal.write(&self.post))
-    }
-}
-
-/// The unsaved work in the journal. Of the changes within a moment only the last one is written.
-struct UnsavedJournal {
-    journal: Journal,
-    works: Vec<UnsavedWork>,
-    /// The work on the disk.
-    written: Vec<UnsavedWork>,
-    /// When to write it; None if it is written.
-    due: Option<Instant>,
-    adopted: Vec<Orphan>,
-    has_failed: bool,
-}
-
-impl UnsavedJournal {
-    fn new(library: &Library) -> Self {
-        Self {
-            journal: Journal::new(library),
-            works: Vec::new(),
-            written: Vec::new(),
-            due: None,
-            adopted: Vec::new(),
-            has_failed: false,
-        }
-    }
-
-    fn note(&mut self, works: Vec<UnsavedWork>, adopted: Vec<Orphan>) {
-        let soon = Instant::now() + GATHER;
-        self.due = Some(self.due.map_or(soon, |due| due.min(soon)));
-        self.works = works;
-        self.adopted.extend(adopted);
-    }
-
-    /// Brings the journal up to date, also if someone has removed it. Returns true if it is; an error is reported once.
-    fn write(&mut self, post: &Post) -> bool {
-        if self.written != self.works || !self.journal.is_intact() {
-            let shapes = self.works.iter().map(UnsavedWork::to_shape);
-            if let Err(error) = self.journal.keep(shapes.collect()) {
-                self.due = Some(Instant::now() + RETRY);
-                if !std::mem::replace(&mut self.has_failed, true) {
-                    let reason = format!("unsaved work cannot be kept: {error}");
-                    post.answer(|app| refuse(app, reason));
-                }
-                return false;
-            }
-            self.written.clone_from(&self.works);
-        }
-        (self.due, self.has_failed) = (None, false);
-        for orphan in self.adopted.drain(..) {
-            // What cannot be removed is offered again: better twice than never.
-            orphan.discard();
-        }
-        true
     }
 }
 
