@@ -1,5 +1,5 @@
 //! The steps of the history as a list: what each step did, with the present state marked. Enter goes to the state
-//! after a step. `/` searches: [`crate::tui::search`].
+//! after a step.
 //!
 //! ```text
 //! History   4 steps

@@ -396,7 +396,7 @@ impl Models {
     /// Reads the model of a file, or prepares the training of a built-in set.
     ///
     /// # Errors
-    /// Those of [`Self::locate`] and [`load_whole_model`].
+    /// If there is no such model, or its file cannot be read as one.
     pub fn find(&self, choice: ModelChoice) -> Result<FoundModel, ReadError> {
         let choice = self.locate(choice)?;
         if let Some(path) = self.file(&choice) {
