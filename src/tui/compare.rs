@@ -19,11 +19,11 @@ use taxel_files::formats::value;
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Flow, Page, Slot, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Slot, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::grid::{CellSize, Grid, Look, RULER, Window, beside_rulers};
 use crate::tui::keys::key::Arrow;
-use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::keys::keymap::Context;
 use crate::tui::widget::theme::{Role, Theme, spelling};
 use crate::tui::widget::write::{self, around, narrow};
 
@@ -282,13 +282,7 @@ impl Page for Comparison {
         Slot::Screen
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        _keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
+    fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
         let differ = differing(self.imprints[0].differing(&self.imprints[1]).count());
         let pieces = [
             (&*differ, Role::Title),

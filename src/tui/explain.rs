@@ -1,17 +1,16 @@
 //! What a descriptor says: its formula, unit, sense and zero, with a drawing. The texts are those of
 //! `docs/glossary.md`.
 
-use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use taxel_core::description::{DESCRIPTORS, Descriptor};
 use taxel_files::formats::value;
 
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Flow, Page, Slot, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Slot, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::keys::key::Arrow;
-use crate::tui::keys::keymap::{Context, Keymap};
-use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::keys::keymap::Context;
+use crate::tui::widget::theme::Role;
 use crate::tui::widget::write::{self, around, broken, narrow};
 
 const GLOSSARY: &str = include_str!("../../docs/glossary.md");
@@ -119,13 +118,7 @@ impl Page for Explain {
         Slot::Body
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        _keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
+    fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
         let own = &DESCRIPTORS[self.descriptor];
         let title = format!("{} ({}): {}", own.symbol, own.key, own.name);
         let pieces = [

@@ -28,10 +28,10 @@ use taxel_files::formats::value::counted;
 use crate::tui::app::change::{refuse, replace};
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Flow, Page, Slot};
+use crate::tui::app::page::{Canvas, Flow, Page, Slot};
 use crate::tui::app::state::App;
 use crate::tui::keys::key::Arrow;
-use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::keys::keymap::Context;
 use crate::tui::widget::field_list::{FieldList, FieldRows, FormError, FormField};
 use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
@@ -340,13 +340,7 @@ impl Page for FormDialog {
         Slot::Form
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        _keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
+    fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
         let title = match &self.subject {
             Subject::Figure(_) => "Figure".to_owned(),
             Subject::Picture(name, _) => format!("Picture: {name}"),

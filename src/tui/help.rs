@@ -7,18 +7,17 @@
 
 use std::borrow::Cow;
 
-use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Flow, LinePrompt, Page, Slot, Wheel};
+use crate::tui::app::page::{Canvas, Flow, LinePrompt, Page, Slot, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::{Context, HelpLine, Keymap, help};
 use crate::tui::widget::rows::{contains, marked};
 use crate::tui::widget::text_field::TextField;
-use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::theme::Role;
 use crate::tui::widget::write::{self, around, broken};
 
 /// The columns of the keys.
@@ -179,13 +178,8 @@ impl Page for Help {
         Slot::Body
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
+    fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
+        let (theme, keymap, buffer) = (canvas.theme, canvas.keymap, canvas.buffer);
         let lines = self.lines(keymap, area.width);
         let (top, found) = (self.top(&lines, area.height), self.found());
         let wanted = found.map_or("", |_| self.wanted.as_str());

@@ -9,18 +9,17 @@
 //! > 3  taxel 8, 8 off                                 the selected row is reversed
 //! ```
 
-use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use taxel_files::formats::value::counted;
 
 use crate::tui::app::change::{compare_with, go_to};
 use crate::tui::app::document::Reading;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Flow, Page, Slot, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Slot, Wheel};
 use crate::tui::app::state::App;
-use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::keys::keymap::Context;
 use crate::tui::widget::rows::{ListRows, moved};
-use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::theme::Role;
 use crate::tui::widget::write;
 
 #[derive(Clone, Debug)]
@@ -92,13 +91,7 @@ impl Page for HistoryDialog {
         Slot::Body
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        _keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
+    fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
         let count = format!("   {}", counted(self.steps.len() as u64, "step"));
         let head = [("History", Role::Title), (count.as_str(), Role::Quiet)];
         write::line(buffer, area, theme, head);

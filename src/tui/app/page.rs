@@ -94,6 +94,25 @@ impl dyn Page {
     }
 }
 
+/// What a page is drawn with.
+#[derive(Debug)]
+pub struct Canvas<'a> {
+    pub theme: &'a Theme,
+    pub keymap: &'a Keymap,
+    pub buffer: &'a mut Buffer,
+}
+
+impl<'a> Canvas<'a> {
+    pub(crate) fn of(app: &'a App, buffer: &'a mut Buffer) -> Self {
+        let (theme, keymap) = (&app.theme, app.keymap());
+        Self {
+            theme,
+            keymap,
+            buffer,
+        }
+    }
+}
+
 /// One place of the screen: what its keys do and what it shows.
 pub trait Page: Any {
     /// Handles a message. The page is not on the stack meanwhile; pages that are opened lie above it.
@@ -116,13 +135,7 @@ pub trait Page: Any {
         !matches!(self.slot(), Slot::Prompt | Slot::Question)
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position>;
+    fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position>;
 
     /// Does nothing by default.
     fn draw_over(&self, _theme: &Theme, _buffer: &mut Buffer, _body: Rect) {}
@@ -213,13 +226,7 @@ impl<Prompt: LinePrompt> Page for Prompt {
         Slot::Prompt
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        _keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
+    fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
         let (label, behind) = (self.label(), self.behind(area.width));
         let cursor = write::prompt(buffer, area, theme, label, self.field(), &behind);
         Some(cursor)

@@ -1,16 +1,14 @@
 //! A question in the line of notices, with what its answers do.
 
-use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::change::{from_prompt, refuse};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Act, Flow, Page, Slot};
+use crate::tui::app::page::{Act, Canvas, Flow, Page, Slot};
 use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::matrix;
-use crate::tui::widget::theme::Theme;
 
 /// Leaving it without an answer does nothing.
 pub(crate) struct Question {
@@ -74,7 +72,7 @@ impl Page for Question {
         Slot::Question
     }
 
-    fn draw(&self, _: &Theme, _: &Keymap, _: &mut Buffer, _: Rect) -> Option<Position> {
+    fn draw(&self, _: Canvas<'_>, _: Rect) -> Option<Position> {
         None
     }
 

@@ -19,7 +19,7 @@ use taxel_files::formats::value;
 use crate::tui::app::change::is_other;
 use crate::tui::app::document::Reading;
 use crate::tui::app::menu;
-use crate::tui::app::page::{Page, Slot, find};
+use crate::tui::app::page::{Canvas, Page, Slot, find};
 use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, Notice};
 use crate::tui::app::view::Panes;
@@ -55,7 +55,7 @@ pub(crate) fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Posi
     let prompt = top.filter(|page| page.slot() == Slot::Prompt);
     let cursor = prompt.and_then(|page| {
         page.draw_over(theme, buffer, panes.body);
-        page.draw(theme, app.keymap(), buffer, panes.notice)
+        page.draw(Canvas::of(app, buffer), panes.notice)
     });
     if let Some((text, role)) = notice(app, panes, top) {
         let block = block(app, panes, &text);

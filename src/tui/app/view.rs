@@ -26,7 +26,7 @@ use ratatui::layout::{Position, Rect};
 use taxel_core::imprint::Imprint;
 
 use crate::tui::app::menu;
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::page::{Canvas, Page, Slot};
 use crate::tui::app::state::{App, NarrowPane};
 use crate::tui::app::status::{self, title};
 use crate::tui::grid::{CellSize, RULER, beside_rulers};
@@ -64,7 +64,7 @@ pub fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
             }
             let area = status::page_area(app, &panes, page);
             write::clear(buffer, area);
-            let own = page.draw(theme, app.keymap(), buffer, area);
+            let own = page.draw(Canvas::of(app, buffer), area);
             cursor = own.or(cursor.filter(|_| slot == Some(Slot::Panel)));
         }
         _ => {}

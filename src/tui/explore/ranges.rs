@@ -21,13 +21,13 @@ use taxel_files::formats::value::{counted, time_in_words};
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Flow, Page, Slot};
+use crate::tui::app::page::{Canvas, Flow, Page, Slot};
 use crate::tui::app::state::App;
 use crate::tui::explore::name_of;
 use crate::tui::explore::work::{measure, sweep};
 use crate::tui::form::RememberedRanges;
 use crate::tui::keys::key::Arrow;
-use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::keys::keymap::Context;
 use crate::tui::widget::field_list::{FieldList, FieldRows, FormError, FormField};
 use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
@@ -318,13 +318,7 @@ impl Page for RangesForm {
         Slot::Form
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        _keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
+    fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
         let title = format!("Explore: {}", name_of(&self.source));
         write::text(buffer, area, theme, &title, Role::Title);
         let (rows, fields) = (self.rows(area), &self.form);

@@ -23,7 +23,7 @@ use taxel_files::formats::value::{counted, grouped};
 use crate::tui::app::change::{change, compare_with, inform, let_go, refuse};
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Flow, Page, Slot, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Slot, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::explore::angles::AngleCurve;
 use crate::tui::explore::export::{ExportDialog, FilterDialog};
@@ -35,7 +35,7 @@ use crate::tui::explore::{
     statistics,
 };
 use crate::tui::keys::action;
-use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::keys::keymap::Context;
 use crate::tui::widget::rows::moved;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, around, narrow};
@@ -419,13 +419,7 @@ impl Page for Results {
         Slot::Screen
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        _keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
+    fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
         for (tab, title, place) in titles(area) {
             let role = if tab == self.tab {
                 Role::Focus

@@ -22,7 +22,7 @@ use taxel_files::storage::{Existing, FileError, PoseFile, atlas_path, is_poses, 
 
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Flow, Page, Slot};
+use crate::tui::app::page::{Canvas, Flow, Page, Slot};
 use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, RunState};
 use crate::tui::explore::ranges::{RangesForm, about};
@@ -30,7 +30,7 @@ use crate::tui::explore::results::Results;
 use crate::tui::explore::{ExploreMessage, Findings, name_of};
 use crate::tui::files::absolute;
 use crate::tui::jobs::{self, JobProgress, answer};
-use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::keys::keymap::Context;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -340,13 +340,7 @@ impl Page for Running {
         Slot::Body
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        _keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
+    fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
         let inner = write::right_of(area, area.x.saturating_add(2));
         let row = |index: usize| write::row(inner, 2 * index);
         write::text(buffer, row(0), theme, &self.title, Role::Title);

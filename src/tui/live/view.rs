@@ -19,7 +19,7 @@ use taxel_files::formats::recording::FrameMark;
 use taxel_files::formats::value::{self, counted, fitting, grouped, measured};
 
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Flow, Page, Slot, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Slot, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
@@ -78,13 +78,8 @@ impl Page for Live {
         }
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
+    fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
+        let (theme, keymap, buffer) = (canvas.theme, canvas.keymap, canvas.buffer);
         let panes = panes(self, area);
         let map = self
             .shown_reading()

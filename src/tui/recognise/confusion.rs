@@ -22,10 +22,10 @@ use taxel_files::formats::value::{counted, grouped, percent};
 
 use crate::tui::app::change::{begin_drawn, refuse};
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Flow, Page, Slot, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Slot, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::grid::draw_thumbnail;
-use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::keys::keymap::Context;
 use crate::tui::recognise::RecogniseMessage;
 use crate::tui::recognise::trained::{TrainedModel, onto};
 use crate::tui::widget::theme::{Role, Theme};
@@ -152,13 +152,7 @@ impl Page for Confusion {
     }
 
     /// Returns the position of the cursor.
-    fn draw(
-        &self,
-        theme: &Theme,
-        _keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
+    fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
         let (panes, count) = (Panes::of(area, self), self.count());
         let (trained, confusion) = (&self.trained, &self.trained.evaluation.confusion);
         let title = format!("Confusion: {}", trained.choice);

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
-use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use taxel_core::imprint::Imprint;
 use taxel_core::recognition::{Answer, Evidence};
@@ -14,18 +13,17 @@ use taxel_files::storage::{ModelChoice, RememberedFile};
 
 use crate::tui::app::change::{begin_drawn, inform, let_go, refuse};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Flow, Page, Slot};
+use crate::tui::app::page::{Canvas, Flow, Page, Slot};
 use crate::tui::app::state::{App, NarrowPane};
 use crate::tui::jobs::{self, answer};
 use crate::tui::keys::action;
-use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::keys::keymap::Context;
 use crate::tui::matrix;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::recognise::RecogniseMessage;
 use crate::tui::recognise::answer::{Found, PoseSearch};
 use crate::tui::recognise::confusion::Confusion;
 use crate::tui::recognise::trained::TrainedModel;
-use crate::tui::widget::theme::Theme;
 use crate::tui::widget::write::other;
 
 pub(crate) struct Recognition {
@@ -244,7 +242,7 @@ impl Page for RecognisePage {
         Slot::Panel
     }
 
-    fn draw(&self, _: &Theme, _: &Keymap, _: &mut Buffer, _: Rect) -> Option<Position> {
+    fn draw(&self, _: Canvas<'_>, _: Rect) -> Option<Position> {
         None
     }
 }

@@ -24,7 +24,7 @@ use taxel_core::pose::Axis;
 use taxel_files::formats::value::{counted, decimal, grouped, percent};
 
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Flow, Page, PoseLayer, Slot};
+use crate::tui::app::page::{Canvas, Flow, Page, PoseLayer, Slot};
 use crate::tui::app::state::App;
 use crate::tui::explore::work::gauge;
 use crate::tui::keys::action;
@@ -56,13 +56,8 @@ impl Page for Recognition {
         Slot::Panel
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
+    fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
+        let (theme, keymap, buffer) = (canvas.theme, canvas.keymap, canvas.buffer);
         let mut panel = Panel {
             theme,
             keymap,

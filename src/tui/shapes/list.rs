@@ -21,7 +21,7 @@ use taxel_files::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::{Message, Purpose};
-use crate::tui::app::page::{Flow, Page, Slot, Wheel, find_mut};
+use crate::tui::app::page::{Canvas, Flow, Page, Slot, Wheel, find_mut};
 use crate::tui::app::state::App;
 use crate::tui::grid::draw_thumbnail;
 use crate::tui::jobs::answer;
@@ -199,13 +199,8 @@ impl Page for ListDialog {
         Slot::Body
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
+    fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
+        let (theme, keymap, buffer) = (canvas.theme, canvas.keymap, canvas.buffer);
         let (area, preview) = panes(area);
         let title = match self.purpose {
             Purpose::Load | Purpose::Compare => "Load",
