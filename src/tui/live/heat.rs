@@ -187,9 +187,9 @@ impl<'a> HeatMap<'a> {
             return false;
         };
         let both = |column| imprint.get(column, row) || imprint.get(column, row + 1);
-        let near = column > 0 && both(column - 1)
+        let near = both(column.wrapping_sub(1))
             || both(column + 1)
-            || row > 0 && imprint.get(column, row - 1)
+            || imprint.get(column, row.wrapping_sub(1))
             || imprint.get(column, row + 2);
         near && !both(column)
     }
@@ -243,11 +243,9 @@ fn looked_at(live: &Live, reading: &LiveReading) -> (u8, u8) {
 }
 
 fn is_edge(imprint: &Imprint, column: u8, row: u8) -> bool {
-    let is_inside = column > 0
-        && row > 0
-        && imprint.get(column - 1, row)
+    let is_inside = imprint.get(column.wrapping_sub(1), row)
         && imprint.get(column + 1, row)
-        && imprint.get(column, row - 1)
+        && imprint.get(column, row.wrapping_sub(1))
         && imprint.get(column, row + 1);
     imprint.get(column, row) && !is_inside
 }

@@ -27,7 +27,7 @@ pub struct FrameHistory {
     /// The frame that the page stays at, as it was when it was frozen; None if the page follows the source.
     frozen: Option<(u64, Arc<Frame>)>,
     /// The largest value of each cell since peak hold was switched on; None if it is off.
-    peak: Option<Arc<Frame>>,
+    pub(crate) peak: Option<Arc<Frame>>,
 }
 
 impl FrameHistory {
@@ -94,10 +94,6 @@ impl FrameHistory {
         Some(self.numbers().end.saturating_sub(shown + 1))
     }
 
-    pub fn holds_peak(&self) -> bool {
-        self.peak.is_some()
-    }
-
     /// Returns the shown frame with its number; None before the first one.
     pub fn shown(&self) -> Option<(u64, Arc<Frame>)> {
         let newest = self.frames.back().map(Arc::clone);
@@ -113,19 +109,12 @@ impl FrameHistory {
 
     /// Returns up to this number of frames that end with the shown one and have its size, the last one first.
     pub fn up_to_shown(&self, count: usize) -> Vec<Arc<Frame>> {
-        let Some((shown, _)) = self.shown() else {
-            return Vec::new();
-        };
-        let from_newest = self.numbers().end.saturating_sub(shown + 1);
-        let skipped = usize::try_from(from_newest).unwrap_or(usize::MAX);
-        let frames: Vec<_> = self.newest_first().skip(skipped).take(count).collect();
-        let same_size = |frame: &&&Arc<Frame>| frame.size() == frames[0].size();
+        let skipped = usize::try_from(self.behind().unwrap_or(0)).unwrap_or(usize::MAX);
+        let newest = self.newest_first().skip(skipped).take(count);
+        let mut frames: Vec<_> = newest.cloned().collect();
+        let same_size = |frame: &&Arc<Frame>| frame.size() == frames[0].size();
+        frames.truncate(frames.iter().take_while(same_size).count());
         frames
-            .iter()
-            .take_while(same_size)
-            .copied()
-            .cloned()
-            .collect()
     }
 
     pub fn freeze(&mut self) {
@@ -148,11 +137,6 @@ impl FrameHistory {
             Some(_) => None,
             None => self.frames.back().cloned(),
         };
-    }
-
-    /// Follows the source from the next frame on.
-    pub fn restart(&mut self) {
-        (self.frozen, self.peak) = (None, None);
     }
 }
 

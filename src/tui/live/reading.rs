@@ -110,19 +110,6 @@ fn largest(values: &Matrix<f64>) -> Option<(f64, (u8, u8))> {
     largest
 }
 
-pub fn hold(held: &mut Frame, frame: &Frame) {
-    if held.size() == frame.size() {
-        for (own, &other) in held.values_mut().iter_mut().zip(frame.values()) {
-            *own = own.max(other);
-        }
-        held.number = frame.number;
-        held.label.clone_from(&frame.label);
-        held.time = frame.time;
-    } else {
-        held.copy_from(frame);
-    }
-}
-
 pub fn round_up(value: f64) -> f64 {
     if value < f64::MIN_POSITIVE || !value.is_finite() {
         return 1.0;
@@ -152,9 +139,9 @@ pub struct ShadeRange {
 /// The span of some values; it only grows.
 #[derive(Clone, Copy, Debug, Default)]
 struct Span {
-    /// The largest value, rounded up to a round number; None as long as no value is above 0. The size of values
-    /// depends on the sensor: one may measure thousands of pascals, another one fractions of a newton.
-    top: Option<f64>,
+    /// The largest value, rounded up to a round number; 0 as long as no value is above it. The size of values depends on
+    /// the sensor: one may measure thousands of pascals, another one fractions of a newton.
+    top: f64,
     bottom: f64,
 }
 
@@ -166,14 +153,13 @@ impl Span {
         });
         self.bottom = self.bottom.min(least);
         if largest > 0.0 {
-            let top = round_up(largest);
-            self.top = Some(self.top.map_or(top, |before| before.max(top)));
+            self.top = self.top.max(round_up(largest));
         }
     }
 
     /// Returns the upper end of the fixed range; 1 as long as no value is above 0.
     fn top(&self) -> f64 {
-        self.top.unwrap_or(1.0)
+        if self.top > 0.0 { self.top } else { 1.0 }
     }
 }
 
@@ -197,8 +183,7 @@ impl ShadeRange {
     /// Returns the values at both ends of the shades. After a tare, 0 is the lower end, so that a pad at rest is drawn
     /// empty, whatever noise the tare has left.
     pub fn ends(&self, layer: HeatLayer, reading: Option<&LiveReading>, tared: bool) -> (f64, f64) {
-        let largest = reading.and_then(|reading| reading.shown_max);
-        let largest = largest.map(|(largest, _)| largest);
+        let largest = reading.and_then(|reading| Some(reading.shown_max?.0));
         let least = reading.map_or(0.0, |reading| reading.least);
         let span = match layer {
             HeatLayer::Raw => self.raw,
@@ -206,17 +191,14 @@ impl ShadeRange {
         };
         let (low, high) = match largest {
             Some(largest) if self.is_own && (largest > 0.0 || least < 0.0) => {
-                (least.min(0.0), largest.max(0.0))
+                (least, largest.max(0.0))
             }
             // Values a little below 0 are noise.
             _ if span.bottom < -span.top() / 20.0 => (-round_up(-span.bottom), span.top()),
             _ => (0.0, span.top()),
         };
-        if tared && layer != HeatLayer::Raw && high > 0.0 {
-            (0.0, high)
-        } else {
-            (low, high)
-        }
+        let is_tared = tared && layer != HeatLayer::Raw && high > 0.0;
+        (if is_tared { 0.0 } else { low }, high)
     }
 }
 

@@ -261,28 +261,22 @@ fn write(
     }
 }
 
-/// The most names that recordings may have.
-const MOST_CHOSEN: u64 = 10_000;
-
 /// Begins a recording in a file whose name is free.
 fn record_in_free_file(
     access: &WriteAccess,
     metadata: &RecordingMetadata,
 ) -> Result<(String, Arc<Recording>), String> {
-    for number in 1..=MOST_CHOSEN {
+    let mut number = 1_u64;
+    loop {
         let name = format!("touch-{number}.npy");
         let path = access.path(&name, Existing::Kept)?;
-        if path.exists() || path.with_extension("json").exists() {
-            continue;
+        if !path.exists() && !path.with_extension("json").exists() {
+            let recording = Recording::create(&path, Existing::Kept, metadata);
+            let recording = recording.map_err(|error| error.to_string())?;
+            return Ok((name, Arc::new(recording)));
         }
-        let recording = Recording::create(&path, Existing::Kept, metadata);
-        let recording = recording.map_err(|error| error.to_string())?;
-        return Ok((name, Arc::new(recording)));
+        number += 1;
     }
-    let most = grouped(MOST_CHOSEN);
-    Err(format!(
-        "{most} recordings are here already; move some elsewhere"
-    ))
 }
 
 /// What a source refers to, in which `~` is the home folder.

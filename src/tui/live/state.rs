@@ -12,7 +12,7 @@ use crate::tui::live::message::{FeedStatus, FrameBatch, SourceGaps, SourceState,
 use crate::tui::live::names::ShapeNames;
 use crate::tui::live::reading::{HeatLayer, LiveReading, ShadeRange};
 use crate::tui::live::threshold;
-use crate::tui::live::trend::{Plotted, Trend};
+use crate::tui::live::trend::Trend;
 
 /// The most frames that a tare by key is made of.
 const TARED: usize = 30;
@@ -41,12 +41,13 @@ pub struct Live {
     pub looked_at: Option<(u8, u8)>,
     pub range: ShadeRange,
     /// The number of frames that were never drawn, because others came before the screen was drawn again.
-    not_drawn: u64,
+    pub(crate) not_drawn: u64,
     pub recording: RecordingState,
     /// The frames marked by key, in order: the number in the history, and what identifies the frame in its source.
-    marks: Vec<(u64, FrameMark)>,
+    pub(crate) marks: Vec<(u64, FrameMark)>,
     pub trend: Trend,
-    pub plotted: Plotted,
+    /// Whether contact instead of force is plotted over the history.
+    pub plots_contact: bool,
     pub names: ShapeNames,
     /// The shown frame, processed; None before the first frame, and for a frame that cannot be processed.
     pub reading: Option<LiveReading>,
@@ -76,7 +77,7 @@ impl Live {
             recording: RecordingState::default(),
             marks: Vec::new(),
             trend: Trend::default(),
-            plotted: Plotted::default(),
+            plots_contact: false,
             names: ShapeNames::new(&request),
             reading: None,
             error: None,
@@ -122,10 +123,6 @@ impl Live {
         self.pipeline.rule()
     }
 
-    pub fn not_drawn(&self) -> u64 {
-        self.not_drawn + self.status.overflowed
-    }
-
     /// Notes that the user has seen the gaps and the note so far.
     pub fn see_notices(&mut self) {
         self.seen_gaps = self.status.gaps;
@@ -154,10 +151,6 @@ impl Live {
         (!troubles.is_empty()).then(|| troubles.join("; "))
     }
 
-    pub fn marks(&self) -> impl DoubleEndedIterator<Item = &FrameMark> {
-        self.marks.iter().map(|(_, mark)| mark)
-    }
-
     /// Returns the labels of the frames that were marked while this recording was made.
     pub fn recorded_marks(&self) -> &[FrameMark] {
         (self.status.channel.as_deref()).map_or(&[], |channel| &channel.marks)
@@ -167,16 +160,12 @@ impl Live {
     /// They count as written afterwards.
     pub fn take_changed_view(&mut self) -> Option<RecordedView> {
         self.recording.name.as_ref()?;
-        let own = |(number, _): &&(u64, FrameMark)| *number >= self.recording.from;
+        let own = self.marks.iter();
+        let own = own.filter(|(number, _)| *number >= self.recording.from);
         std::mem::take(&mut self.is_view_changed).then(|| RecordedView {
             rule: self.rule(),
             tare: self.pipeline.processing.tare.clone(),
-            marks: self
-                .marks
-                .iter()
-                .filter(own)
-                .map(|(_, mark)| *mark)
-                .collect(),
+            marks: own.map(|(_, mark)| *mark).collect(),
         })
     }
 
@@ -370,6 +359,7 @@ impl Live {
         self.history.shown().map(|(number, _)| number) != before
     }
 
+    /// Goes on or back by this number of frames; false if there is none.
     pub fn scrub(&mut self, by: i64) -> bool {
         let shown = self.history.shown();
         shown.is_some_and(|(number, _)| self.stay_at(number.saturating_add_signed(by)))
@@ -380,25 +370,22 @@ impl Live {
         let Some((shown, frame)) = self.history.shown() else {
             return false;
         };
+        let Some(now) = frame.time else {
+            return self.scrub(10 * by);
+        };
         let is_there = |number: &u64| {
             let other = self.history.get(*number).and_then(|other| other.time);
-            let times = other.zip(frame.time);
-            times.is_some_and(|(other, now)| (other - now).abs() >= 1.0)
+            other.is_some_and(|other| (other - now).abs() >= 1.0)
         };
         let numbers = self.history.numbers();
-        let (before, after) = (
-            numbers.start..shown.min(numbers.end),
-            shown + 1..numbers.end,
-        );
         let found = if by < 0 {
-            before.rev().find(is_there).unwrap_or(numbers.start)
+            let mut before = (numbers.start..shown.min(numbers.end)).rev();
+            before.find(is_there).unwrap_or(numbers.start)
         } else {
-            after.clone().find(is_there).unwrap_or(numbers.end)
+            let mut after = shown + 1..numbers.end;
+            after.find(is_there).unwrap_or(numbers.end)
         };
-        match frame.time {
-            Some(_) => self.stay_at(found),
-            None => self.scrub(10 * by),
-        }
+        self.stay_at(found)
     }
 
     /// Goes on or back to the next frame in which a touch begins; false if there is none.
@@ -411,22 +398,6 @@ impl Live {
             _ => begins.find(|number| **number > shown),
         };
         next.is_some_and(|number| self.stay_at(*number))
-    }
-
-    pub fn follow(&mut self) {
-        self.history.follow();
-        self.read();
-    }
-
-    pub fn switch_peak(&mut self) {
-        self.history.switch_peak();
-        self.read();
-    }
-
-    /// Shows the next layer: raw values, tared values or imprint.
-    pub fn next_layer(&mut self) {
-        self.layer = self.layer.next();
-        self.read();
     }
 
     pub fn begin_recording(&mut self, name: Option<String>) {
@@ -486,7 +457,8 @@ impl Live {
         self.stopped = false;
         self.recording.name = None;
         self.recording.refusal = None;
-        self.history.restart();
+        self.history.follow();
+        self.history.peak = None;
         self.pipeline.restart();
         self.tare_error = None;
         self.status.state = SourceState::Waiting;
@@ -495,7 +467,8 @@ impl Live {
         self.read();
     }
 
-    fn read(&mut self) {
+    /// Processes the frame that is shown now.
+    pub(super) fn read(&mut self) {
         (self.reading, self.error) = match self.history.drawn() {
             Some(frame) => self.read_frame(frame),
             None => (None, None),

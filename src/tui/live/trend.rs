@@ -21,23 +21,6 @@ use crate::tui::widget::write::{self, narrow};
 /// The lines of the least plot: its title and two lines of bars.
 pub(super) const LEAST: u16 = 3;
 
-/// What is plotted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Plotted {
-    #[default]
-    Force,
-    Contact,
-}
-
-impl Plotted {
-    pub fn other(self) -> Self {
-        match self {
-            Self::Force => Self::Contact,
-            Self::Contact => Self::Force,
-        }
-    }
-}
-
 /// Force and contact of the newest frames; NaN for a frame that cannot be processed.
 #[derive(Clone, Debug, Default)]
 pub struct Trend(VecDeque<[f64; 2]>);
@@ -68,20 +51,17 @@ impl Trend {
         begun.map(|index| first + index as u64).collect()
     }
 
-    /// Returns the most of each column, the number of the first frame in the history, and the frames of a column. Columns
+    /// Returns the most of each column (of the force, 0, or the contact, 1), the number of the first frame in the history, and the frames of a column. Columns
     /// begin at multiples of these, so that bars stay as they are while frames come.
-    fn columns(&self, plotted: Plotted, next: u64, width: u16) -> (Vec<f64>, u64, u64) {
+    fn columns(&self, plotted: usize, next: u64, width: u16) -> (Vec<f64>, u64, u64) {
         let first = next - (self.0.len() as u64).min(next);
         let mut each = 1;
         while next.saturating_sub(1) / each - first / each >= u64::from(width) {
             each *= 2;
         }
         let mut columns: Vec<f64> = Vec::new();
-        for (number, &[force, contact]) in (first..).zip(&self.0) {
-            let value = match plotted {
-                Plotted::Force => force,
-                Plotted::Contact => contact,
-            };
+        for (number, values) in (first..).zip(&self.0) {
+            let value = values[plotted];
             match columns.last_mut() {
                 Some(last) if !number.is_multiple_of(each) => *last = last.max(value),
                 _ => columns.push(value),
@@ -94,11 +74,14 @@ impl Trend {
 /// Draws the bars, with the column of a frozen frame reversed.
 pub fn draw(live: &Live, theme: &Theme, buffer: &mut Buffer, area: Rect) {
     let next = live.history.numbers().end;
-    let (columns, first, each) = live.trend.columns(live.plotted, next, area.width);
+    let (columns, first, each) = live
+        .trend
+        .columns(live.plots_contact.into(), next, area.width);
     let top = round_up(columns.iter().copied().fold(0.0, f64::max));
-    let (name, unit) = match live.plotted {
-        Plotted::Force => ("force", live.unit()),
-        Plotted::Contact => ("contact", " taxels".to_owned()),
+    let (name, unit) = if live.plots_contact {
+        ("contact", " taxels".to_owned())
+    } else {
+        ("force", live.unit())
     };
     let scale = format!("  0 to {}{unit}", measured(top, 9));
     let pieces = [(name, Role::Key), (&*scale, Role::Quiet)];
@@ -152,14 +135,14 @@ mod tests {
             add(value);
         }
         // Frames 3 to 9, of which two at a time share a column: 3, 4 5, 6 7, 8 9.
-        let found = trend.columns(Plotted::Force, 10, 4);
+        let found = trend.columns(0, 10, 4);
         assert_eq!(found, (vec![1.0, 5.0, 2.0, 7.0], 3, 2));
-        assert_eq!(trend.columns(Plotted::Contact, 10, 7).0, [1.0; 7]);
+        assert_eq!(trend.columns(1, 10, 7).0, [1.0; 7]);
         assert_eq!(
             [0.0, 0.01, 0.5, 1.0].map(|share| height(share, 4)),
             [0, 1, 4, 8]
         );
         trend.keep(2);
-        assert_eq!(trend.columns(Plotted::Force, 10, 4), (vec![7.0, 3.0], 8, 1));
+        assert_eq!(trend.columns(0, 10, 4), (vec![7.0, 3.0], 8, 1));
     }
 }

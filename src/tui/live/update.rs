@@ -72,7 +72,8 @@ pub fn in_live(page: &mut Live, app: &mut App, message: &Message) -> Flow {
     page.see_notices();
     match message {
         Message::Cancel if !page.history.follows() && !page.status.state.is_final() => {
-            page.follow();
+            page.history.follow();
+            page.read();
         }
         Message::Cancel | Message::Quit => {
             page.stop();
@@ -86,12 +87,12 @@ pub fn in_live(page: &mut Live, app: &mut App, message: &Message) -> Flow {
             }
             None => refuse_imprint(app, page),
         },
-        Message::Scroll(by) => {
-            let found = page.scrub((*by).into());
-            say_if_not(app, found, page, (*by).into(), "frame");
-        }
+        Message::Scroll(by) => go(app, page, *by, "frame", Live::scrub),
         Message::ScrollTo(Endpoint::First) => drop(page.stay_at(0)),
-        Message::ScrollTo(Endpoint::Last) => page.follow(),
+        Message::ScrollTo(Endpoint::Last) => {
+            page.history.follow();
+            page.read();
+        }
         Message::SwitchPane => page.only_panel ^= true,
         Message::Live(asked) => adjust(app, page, asked),
         Message::Command => return Flow::push(CommandDialog::over(Context::Live, app)),
@@ -100,9 +101,16 @@ pub fn in_live(page: &mut Live, app: &mut App, message: &Message) -> Flow {
     Flow::Stay
 }
 
-/// Says that there is no earlier or later one of what was looked for in the history, unless it was found.
-fn say_if_not(app: &mut App, found: bool, page: &Live, by: i64, what: &str) {
-    if !found {
+/// Goes to another frame of the history, or says that there is no earlier or later one of `what` is looked for.
+fn go(
+    app: &mut App,
+    page: &mut Live,
+    by: impl Into<i64>,
+    what: &str,
+    scrub: fn(&mut Live, i64) -> bool,
+) {
+    let by = by.into();
+    if !scrub(page, by) {
         let text = match by {
             ..0 => format!("no earlier {what} in the history"),
             _ if page.status.state.is_final() => format!("no later {what}"),
@@ -124,17 +132,14 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) {
         LiveMessage::Threshold(direction) => page.step_threshold(*direction),
         LiveMessage::Percent => page.switch_unit(),
         LiveMessage::Freeze => page.freeze(),
-        LiveMessage::Second(by) => {
-            let found = page.scrub_second((*by).into());
-            say_if_not(app, found, page, (*by).into(), "frame");
+        LiveMessage::Second(by) => go(app, page, *by, "frame", Live::scrub_second),
+        LiveMessage::Touch(by) => go(app, page, *by, "touch", Live::scrub_touch),
+        LiveMessage::PeakHold => {
+            page.history.switch_peak();
+            page.read();
         }
-        LiveMessage::Touch(by) => {
-            let found = page.scrub_touch((*by).into());
-            say_if_not(app, found, page, (*by).into(), "touch");
-        }
-        LiveMessage::PeakHold => page.switch_peak(),
         LiveMessage::NextLayer => next_layer(app, page),
-        LiveMessage::Plot => page.plotted = page.plotted.other(),
+        LiveMessage::Plot => page.plots_contact ^= true,
         LiveMessage::Numbers => page.numbers ^= true,
         LiveMessage::OwnRange => {
             page.range.is_own ^= true;
@@ -157,7 +162,10 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) {
             None => refuse(app, NO_FRAME),
         },
         LiveMessage::NameShape => names::name_by_next(app),
-        LiveMessage::Again => watch_again(app, page),
+        LiveMessage::Again => match page.check_again() {
+            Ok(()) => restart(app, page),
+            Err(refused) => refuse(app, refused),
+        },
         LiveMessage::Source(source) => check_source(app, source),
         // These are typed after `:`, and reach the page from there.
         LiveMessage::Open
@@ -181,7 +189,8 @@ fn tare_of(page: &Live, frames: u64) -> String {
 }
 
 fn next_layer(app: &mut App, page: &mut Live) {
-    page.next_layer();
+    page.layer = page.layer.next();
+    page.read();
     let shows_raw = page.pipeline.origin().is_none() && page.pipeline.processing.gain.is_none();
     match page.layer {
         HeatLayer::Tared if shows_raw => inform(app, "no tare: the values are the raw ones"),
@@ -383,13 +392,6 @@ fn open(app: &mut App) {
         restart(app, &mut page);
     }
     app.pages.push(page);
-}
-
-fn watch_again(app: &mut App, page: &mut Live) {
-    match page.check_again() {
-        Ok(()) => restart(app, page),
-        Err(refused) => refuse(app, refused),
-    }
 }
 
 fn restart(app: &mut App, page: &mut Live) {

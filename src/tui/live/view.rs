@@ -192,7 +192,7 @@ fn lines(
     let rate = live.rate().map(|rate| format!("{}/s", fitting(rate, 5)));
     lines.push(("rate", rate.unwrap_or_else(|| theme.none().to_owned())));
     lines.push(("dropped", dropped(live)));
-    lines.push(("not drawn", grouped(live.not_drawn())));
+    lines.push(("not drawn", grouped(live.not_drawn + live.status.overflowed)));
     let gaps = live.status.gaps;
     if gaps.count > 0 {
         let missing = value::decimal(gaps.missing, 1);
@@ -209,13 +209,13 @@ fn lines(
 /// Returns the last marked frames: those marked by keys, and those that were marked while the recording was made, which
 /// it knows by their labels. None if no frame is marked.
 fn marked(live: &Live) -> Option<String> {
-    let text = |what, marks: Vec<&FrameMark>| {
-        let numbers = marks.iter().rev().map(|mark| mark.number.to_string());
+    let text = |what, marks: &mut dyn DoubleEndedIterator<Item = &FrameMark>| {
+        let numbers = marks.rev().map(|mark| mark.number.to_string());
         let numbers: Vec<String> = numbers.take(LISTED).collect();
-        (!marks.is_empty()).then(|| format!("{what} {}", numbers.join(", ")))
+        (!numbers.is_empty()).then(|| format!("{what} {}", numbers.join(", ")))
     };
-    let own = text("frame", live.marks().collect());
-    let recorded = text("label", live.recorded_marks().iter().collect());
+    let own = text("frame", &mut live.marks.iter().map(|(_, mark)| mark));
+    let recorded = text("label", &mut live.recorded_marks().iter());
     let texts: Vec<String> = own.into_iter().chain(recorded).collect();
     (!texts.is_empty()).then(|| texts.join("; "))
 }
@@ -334,13 +334,9 @@ fn dropped(live: &Live) -> String {
 
 /// Draws the lines from the top; lines that do not fit into the area are left out.
 fn draw_lines(lines: &[(&'static str, String)], theme: &Theme, buffer: &mut Buffer, area: Rect) {
-    let height = usize::from(area.height);
-    let shown = if lines.len() > height {
-        height.saturating_sub(1)
-    } else {
-        lines.len()
-    };
-    if shown < lines.len() {
+    let mut shown = lines.len();
+    if shown > area.height.into() {
+        shown = area.height.saturating_sub(1).into();
         let last = write::row(area, shown);
         let left = format!("and {} more on a larger screen", lines.len() - shown);
         write::text(buffer, last, theme, &left, Role::Quiet);
@@ -355,19 +351,16 @@ fn draw_lines(lines: &[(&'static str, String)], theme: &Theme, buffer: &mut Buff
 /// Draws the title. The name of the source is cut off first: the user typed it and knows it. Usual states, such as
 /// following the source, are omitted; a channel is named only if there are several.
 fn draw_title(live: &Live, window: Option<String>, theme: &Theme, buffer: &mut Buffer, area: Rect) {
-    let mut pieces = of_state(live);
-    pieces.extend(window.map(|window| (window, Role::Text)));
-    let pieces = pieces
-        .into_iter()
-        .map(|(text, role)| (format!("  {text}"), role));
+    let window = window.map(|window| (window, Role::Text));
+    let pieces = of_state(live).into_iter().chain(window);
+    let pieces = pieces.map(|(text, role)| (format!("  {text}"), role));
     let pieces: Vec<(String, Role)> = pieces.collect();
     let others: usize = pieces.iter().map(|(text, _)| write::width(text)).sum();
     let room = usize::from(area.width).saturating_sub(others).max(LABEL);
     let name = live.request.name();
-    let name = write::fitted(&name, room, theme);
+    let name = (&*write::fitted(&name, room, theme), Role::Title);
     let pieces = pieces.iter().map(|(text, role)| (&**text, *role));
-    let pieces = std::iter::once((&*name, Role::Title)).chain(pieces);
-    write::line(buffer, area, theme, pieces);
+    write::line(buffer, area, theme, std::iter::once(name).chain(pieces));
 }
 
 /// Returns which frame is shown, and everything unusual about it and its source.
@@ -393,13 +386,10 @@ fn of_state(live: &Live) -> Vec<(String, Role)> {
     if let Some(time) = frame.and_then(|frame| frame.time) {
         say(format!("{} s", value::decimal(time, 3)), Role::Text);
     }
-    match live.history.behind() {
-        Some(0) => say("frozen".to_owned(), Role::Focus),
-        Some(back) => say(
-            format!("frozen, {} behind", counted(back, "frame")),
-            Role::Focus,
-        ),
-        None => {}
+    if let Some(back) = live.history.behind() {
+        let behind = format!("frozen, {} behind", counted(back, "frame"));
+        let frozen = if back > 0 { behind } else { "frozen".to_owned() };
+        say(frozen, Role::Focus);
     }
     if live.recording.name.is_some() {
         say("recording".to_owned(), Role::Focus);
@@ -415,7 +405,7 @@ fn of_state(live: &Live) -> Vec<(String, Role)> {
     if let Some(progress) = live.pipeline.progress() {
         say(format!("tare: {}", progress_text(progress)), Role::Focus);
     }
-    if live.history.holds_peak() {
+    if live.history.peak.is_some() {
         say("max held".to_owned(), Role::Focus);
     }
     if live.is_marked() {
