@@ -10,9 +10,7 @@ pub mod recording;
 use std::ffi::OsStr;
 use std::path::PathBuf;
 
-use taxel_core::frame::{
-    Frame, FrameError, Processed, Processing, Rule, RuleOrigin, SetRule, TareFrames,
-};
+use taxel_core::frame::{Frame, FrameError, Processing, Rule, RuleOrigin, SetRule, TareFrames};
 use taxel_core::recognition::Noise;
 use taxel_files::acquire::{AcquireOptions, FrameSource};
 use taxel_files::formats::recording::ChannelInfo;
@@ -81,7 +79,7 @@ pub struct Pipeline {
     wanted: Option<u64>,
     from_settings: bool,
     making: Option<TareFrames>,
-    origin: Option<TareOrigin>,
+    pub(crate) origin: Option<TareOrigin>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,8 +110,7 @@ impl Pipeline {
             processing,
             wanted: tare,
             from_settings: from == RuleOrigin::Settings,
-            making: None,
-            origin: None,
+            ..Self::default()
         };
         pipeline.restart();
         pipeline
@@ -130,10 +127,6 @@ impl Pipeline {
 
     pub fn rule(&self) -> Option<SetRule> {
         self.processing.applied_rule()
-    }
-
-    pub fn origin(&self) -> Option<TareOrigin> {
-        self.origin
     }
 
     /// How many frames have come for the tare, and how many it needs; None if none is being made.
@@ -240,10 +233,6 @@ impl Pipeline {
         let lacking = self.lacking();
         self.making = None;
         lacking
-    }
-
-    pub fn run(&mut self, frame: &Frame) -> Result<Processed<'_>, FrameError> {
-        self.processing.run(frame)
     }
 
     /// The error in words. If the settings ask for the tare that lacks frames, it names them.

@@ -120,13 +120,13 @@ impl FormDialog {
     }
 
     fn on_kind(&self) -> bool {
-        self.form.focus().is_none()
+        self.form.focus.is_none()
     }
 
     /// Makes the fields of the subject. A figure of another kind is another figure: it has what was typed, accepted last
     /// for this kind, or by default, not what the one on the matrix has.
     fn fill(&mut self) {
-        for field in self.form.fields().iter().filter(|field| field.changed()) {
+        for field in self.form.fields.iter().filter(|field| field.changed()) {
             self.typed
                 .retain(|(parameter, _)| *parameter != field.parameter);
             self.typed.push((field.parameter, field.text().to_owned()));
@@ -154,7 +154,7 @@ impl FormDialog {
             }
             field
         });
-        let (fields, focus) = (fields.collect(), self.form.focus());
+        let (fields, focus) = (fields.collect(), self.form.focus);
         self.form = FieldList::new(fields, self.kind().is_some(), sensor);
         self.form.set_focus(focus);
     }
@@ -178,7 +178,7 @@ impl FormDialog {
     /// Other kinds of figure, too, begin with their defaults from now on.
     fn begin_anew(&mut self) {
         self.memory = FormMemory::default();
-        let focus = self.form.focus();
+        let focus = self.form.focus;
         self.form = FieldList::new(Vec::new(), false, self.before.sensor);
         self.typed.clear();
         self.fill();
@@ -188,10 +188,10 @@ impl FormDialog {
     fn edit(&mut self, change: impl FnOnce(&mut FieldList<ParameterField>)) {
         change(&mut self.form);
         let made = self.made();
-        let focused = self.form.focus().and_then(|at| self.form.fields().get(at));
+        let focused = self.form.focus.and_then(|at| self.form.fields.get(at));
         if let Some(made) = made
             .clone()
-            .filter(|_| focused.is_none_or(|field| field.input.fresh()))
+            .filter(|_| focused.is_none_or(|field| field.input.fresh))
         {
             self.settled = made;
         }
@@ -207,7 +207,7 @@ impl FormDialog {
         let value = |parameter: Parameter| {
             let field = self
                 .form
-                .fields()
+                .fields
                 .iter()
                 .find(|own| own.parameter == parameter)?;
             field.value(&sensor).ok().flatten()
@@ -246,13 +246,8 @@ impl FormDialog {
     }
 
     fn rows(&self, area: Rect) -> FieldRows {
-        let (fixed, fields) = (self.kind().is_some().into(), self.form.fields());
-        FieldRows::of(
-            write::below(area, 1),
-            fixed,
-            fields.len(),
-            self.form.focus(),
-        )
+        let (fixed, fields) = (self.kind().is_some().into(), &self.form.fields);
+        FieldRows::of(write::below(area, 1), fixed, fields.len(), self.form.focus)
     }
 
     fn remark(&self, field: &ParameterField) -> Option<&'static str> {
@@ -322,7 +317,7 @@ impl Page for FormDialog {
                 refuse(app, "an arrow or a letter chooses the kind");
             }
             Message::Step(direction) => self.edit(|form| {
-                let sensor = *form.sensor();
+                let sensor = form.sensor;
                 if let Some(field) = form.focused() {
                     field.step(direction, &sensor);
                 }

@@ -105,10 +105,6 @@ impl Window {
         (0..).zip(self.first..self.first + self.count)
     }
 
-    pub fn is_whole(&self) -> bool {
-        self.count == self.all
-    }
-
     /// Whether cells are hidden before and after the window.
     pub fn hidden(&self) -> (bool, bool) {
         (self.first > 0, self.first + self.count < self.all)
@@ -155,6 +151,11 @@ impl Grid {
             columns: Window::showing(columns, room, seen.columns(), 1),
             rows: Window::showing(rows, narrow(lines), seen.rows(), step),
         }
+    }
+
+    /// Whether all cells are visible.
+    pub fn is_whole(&self) -> bool {
+        self.columns.count == self.columns.all && self.rows.count == self.rows.all
     }
 
     /// The columns and lines of the screen that the window takes.
@@ -224,8 +225,34 @@ impl Grid {
             (self.rows.hidden(), self.columns.hidden());
         let (width, height) = self.characters();
         // Numbers end before an arrow.
-        self.draw_columns(theme, buffer, width.saturating_sub(more_right.into()));
-        self.draw_rows(theme, buffer);
+        let room = width.saturating_sub(more_right.into());
+        let columns = self.columns.visible();
+        let cell = self.size.columns();
+        let every = match cell {
+            1 => 5,
+            2 => 2,
+            _ => 1,
+        };
+        for (index, column) in columns.filter(|(_, column)| column % every == 0) {
+            let text = column.to_string();
+            let length = narrow(text.len());
+            let inside = match self.size {
+                // Its number ends where its values end.
+                CellSize::Number => 4 - length,
+                _ => (cell.max(2) - 2) / 2,
+            };
+            let x = index * cell + inside;
+            if x + length <= room {
+                let place = Rect::new(self.x + x, self.y.saturating_sub(1), length, 1);
+                write::text(buffer, place, theme, &text, Role::Quiet);
+            }
+        }
+        for (index, row) in self.rows.visible().step_by(self.size.rows().into()) {
+            let cell = self.rect(0, index);
+            let y = cell.y + (cell.height - 1) / 2;
+            let place = Rect::new(self.x.saturating_sub(RULER), y, RULER - 1, 1);
+            write::text(buffer, place, theme, &format!("{row:>2}"), Role::Quiet);
+        }
         let (before, line) = (self.x.saturating_sub(1), self.y.saturating_sub(1));
         let marks = [
             (more_above, before, self.y, above),
@@ -236,40 +263,6 @@ impl Grid {
         for (_, x, y, mark) in marks.into_iter().filter(|(more, ..)| *more) {
             let place = Rect::new(x, y, 1, 1);
             write::text(buffer, place, theme, &mark.to_string(), Role::Key);
-        }
-    }
-
-    pub fn draw_columns(&self, theme: &Theme, buffer: &mut Buffer, width: u16) {
-        let cell = self.size.columns();
-        let every = match cell {
-            1 => 5,
-            2 => 2,
-            _ => 1,
-        };
-        let columns = self.columns.visible();
-        for (index, column) in columns.filter(|(_, column)| column % every == 0) {
-            let text = column.to_string();
-            let length = narrow(text.len());
-            let inside = match self.size {
-                // Its number ends where its values end.
-                CellSize::Number => 4 - length,
-                _ => (cell.max(2) - 2) / 2,
-            };
-            let x = index * cell + inside;
-            if x + length <= width {
-                let place = Rect::new(self.x + x, self.y.saturating_sub(1), length, 1);
-                write::text(buffer, place, theme, &text, Role::Quiet);
-            }
-        }
-    }
-
-    pub fn draw_rows(&self, theme: &Theme, buffer: &mut Buffer) {
-        let rows = self.rows.visible().step_by(self.size.rows().into());
-        for (index, row) in rows {
-            let cell = self.rect(0, index);
-            let y = cell.y + (cell.height - 1) / 2;
-            let place = Rect::new(self.x.saturating_sub(RULER), y, RULER - 1, 1);
-            write::text(buffer, place, theme, &format!("{row:>2}"), Role::Quiet);
         }
     }
 }

@@ -638,7 +638,7 @@ impl Answering<'_> {
         pipeline: &mut Pipeline,
         mut take: impl FnMut(&Frame, Processed<'_>) -> Result<ControlFlow<()>, Failure>,
     ) -> Result<(), Failure> {
-        recording.frames_again(index, |frame| match pipeline.run(frame) {
+        recording.frames_again(index, |frame| match pipeline.processing.run(frame) {
             Ok(processed) => take(frame, processed),
             Err(error) => Err(self.refused(self.pipeline.explained(&error))),
         })
@@ -686,7 +686,7 @@ impl Answering<'_> {
                 .get(next)
                 .is_some_and(|own| own.contains(&frame.number))
             {
-                let processed = pipeline.run(frame);
+                let processed = pipeline.processing.run(frame);
                 let processed =
                     processed.map_err(|error| self.refused(self.pipeline.explained(&error)))?;
                 self.give(channel, frame, &processed, answered)?;

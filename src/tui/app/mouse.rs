@@ -171,8 +171,7 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
     let cursor = app.cursor();
     let own = grid.at(column, row).find(|&taxel| taxel == cursor);
     let (column, row) = own.or_else(|| grid.at(column, row).next())?;
-    let whole = grid.columns.is_whole() && grid.rows.is_whole();
-    Some(Target::Taxel(column, row, whole))
+    Some(Target::Taxel(column, row, grid.is_whole()))
 }
 
 #[cfg(test)]

@@ -135,7 +135,7 @@ impl RangesForm {
     fn propose(&mut self) -> Option<()> {
         let mut given = GivenRanges::default();
         let mut orientations = 1;
-        let fields = self.form.fields().iter();
+        let fields = self.form.fields.iter();
         for field in fields.filter(|field| !field.is_proposed()) {
             let range: DecimalRange = field.text().parse().ok()?;
             if !matches!(field.axis, Axis::X0 | Axis::Y0) {
@@ -144,10 +144,10 @@ impl RangesForm {
             given[field.axis] = Some(range);
         }
         let is_few = orientations <= MOST_ORIENTATIONS;
-        let (source, sensor) = (&self.source, self.form.sensor());
+        let (source, sensor) = (&self.source, &self.form.sensor);
         let ranges = is_few.then(|| default_ranges(source, sensor, self.anchor, &given));
         let ranges = ranges?.ok()?;
-        for field in self.form.fields_mut() {
+        for field in &mut self.form.fields {
             let text = ranges[field.axis].to_string();
             if field.is_proposed() && field.text() != text {
                 field.input = TextField::new(text.as_str(), LONGEST);
@@ -177,10 +177,10 @@ impl RangesForm {
             return Err(error.full);
         }
         let mut ranges = Ranges::default();
-        for field in self.form.fields() {
+        for field in &self.form.fields {
             ranges[field.axis] = field.text().parse().unwrap_or(ranges[field.axis]);
         }
-        let (source, sensor) = (self.source.clone(), *self.form.sensor());
+        let (source, sensor) = (self.source.clone(), self.form.sensor);
         let grid = PoseGrid::new(source, sensor, self.anchor, ranges);
         grid.map_err(|error| error.to_string())
     }
@@ -196,11 +196,11 @@ impl RangesForm {
     }
 
     fn remembered(&self) -> RememberedRanges {
-        let fields = self.form.fields().iter();
+        let fields = self.form.fields.iter();
         let own = fields.filter(|field| !field.is_proposed());
         RememberedRanges {
             of: self.source.kind_name().to_owned(),
-            size: self.form.sensor().size(),
+            size: self.form.sensor.size(),
             anchor: self.anchor,
             ranges: own
                 .filter_map(|field| Some((field.axis, field.text().parse().ok()?)))
@@ -210,10 +210,10 @@ impl RangesForm {
 
     /// The title is above them; below them are three lines, or as many as the rows leave, but at least one.
     fn rows(&self, area: Rect) -> FieldRows {
-        let (below, rows) = (write::below(area, 1), self.form.fields().len() + 1);
+        let (below, rows) = (write::below(area, 1), self.form.fields.len() + 1);
         let foot = below.height.saturating_sub(narrow(rows)).clamp(1, 3);
         let height = below.height.saturating_sub(foot);
-        let focus = self.form.focus().unwrap_or(rows - 1);
+        let focus = self.form.focus.unwrap_or(rows - 1);
         FieldRows::of(Rect { height, ..below }, 0, rows, Some(focus))
     }
 
@@ -222,7 +222,7 @@ impl RangesForm {
             Anchor::Corner => ("corner", "top left, before turning"),
             Anchor::Centre => ("centre", "point it turns about"),
         };
-        let has_focus = self.form.focus().is_none();
+        let has_focus = self.form.focus.is_none();
         let role = if has_focus { Role::Focus } else { Role::Text };
         let pieces = [
             ("Anchor  ", Role::Text),
@@ -267,7 +267,7 @@ impl RangesForm {
 impl Page for RangesForm {
     /// On the anchor, Space, a click and the arrows to the sides choose the other one.
     fn on(&mut self, app: &mut App, message: &Message) -> Flow {
-        let on_anchor = self.form.focus().is_none();
+        let on_anchor = self.form.focus.is_none();
         match message {
             Message::Accept => match self.grid.clone() {
                 Ok(grid) => {
@@ -283,8 +283,8 @@ impl Page for RangesForm {
                 }
             },
             Message::Defaults => {
-                let of = (self.source.clone(), *self.form.sensor(), self.by_hand);
-                let focus = self.form.focus();
+                let of = (self.source.clone(), self.form.sensor, self.by_hand);
+                let focus = self.form.focus;
                 *self = Self::new(of, None, None);
                 self.form.set_focus(focus);
                 measure(app, self);
@@ -324,9 +324,9 @@ impl Page for RangesForm {
         let (rows, fields) = (self.rows(area), &self.form);
         let mut cursor = rows.draw(theme, fields, (LABEL, INPUT), |_| None, buffer);
         let mut visible = rows.visible();
-        if let Some((_, row)) = visible.find(|(index, _)| *index == fields.fields().len()) {
+        if let Some((_, row)) = visible.find(|(index, _)| *index == fields.fields.len()) {
             let at = self.draw_anchor(theme, buffer, row);
-            cursor = cursor.or(fields.focus().is_none().then_some(at));
+            cursor = cursor.or(fields.focus.is_none().then_some(at));
         }
         let mut rest = rows.rest(area);
         for (text, role) in self.summary() {
@@ -338,7 +338,7 @@ impl Page for RangesForm {
 
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
         let row = self.rows(area).at(at.y)?;
-        let field = (row < self.form.fields().len()).then_some(row);
+        let field = (row < self.form.fields.len()).then_some(row);
         Some(Message::ToField(field))
     }
 }

@@ -11,18 +11,17 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::style::Style;
+use ratatui::style::{Color, Style};
 use taxel_core::imprint::{Bounds, Imprint};
 use taxel_core::matrix::Matrix;
-use taxel_files::formats::value::measured;
+use taxel_files::formats::value::{self, measured};
 
 use crate::tui::grid::{CellSize, Grid, Look, Window, beside_rulers};
 use crate::tui::keys::key::Arrow;
 use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::state::Live;
 use crate::tui::live::trend;
-use crate::tui::widget::shades;
-use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::theme::{ColorDepth, Palette, Role, Theme, Tone};
 use crate::tui::widget::write::{below, right_of};
 
 /// The least columns of the panel, and those that must remain if taxels are enlarged.
@@ -30,6 +29,19 @@ const PANEL: u16 = 26;
 const WIDE_PANEL: u16 = 44;
 
 const GAP: u16 = 2;
+
+/// The colours of values, from low to high.
+const TONES: [Tone; 9] = [
+    (Color::Blue, 53, [68, 1, 84]),
+    (Color::Blue, 54, [71, 45, 123]),
+    (Color::Blue, 24, [59, 82, 139]),
+    (Color::Cyan, 30, [44, 114, 142]),
+    (Color::Cyan, 36, [33, 145, 140]),
+    (Color::Green, 71, [40, 174, 128]),
+    (Color::Green, 77, [94, 201, 98]),
+    (Color::Yellow, 148, [173, 220, 48]),
+    (Color::Yellow, 220, [253, 231, 37]),
+];
 
 /// The columns of a number, without its mark and the blank after it.
 const DIGITS: usize = 4;
@@ -70,7 +82,7 @@ impl<'a> HeatMap<'a> {
             .reading
             .imprint
             .is_some_and(|imprint| !imprint.is_empty());
-        any.then(|| format!("{} {marked}", shades::edge(self.theme)))
+        any.then(|| format!("{} {marked}", edge(self.theme)))
     }
 
     /// Returns the visible columns and rows, counted from 0; None if all are visible.
@@ -80,8 +92,7 @@ impl<'a> HeatMap<'a> {
             let last = axis.first + axis.count.saturating_sub(1);
             format!("{}-{last}", axis.first)
         };
-        let is_whole = columns.is_whole() && rows.is_whole();
-        (!is_whole && columns.count > 0 && rows.count > 0)
+        (!self.grid.is_whole() && columns.count > 0 && rows.count > 0)
             .then(|| format!("columns {}, rows {}", span(columns), span(rows)))
     }
 
@@ -100,6 +111,10 @@ impl<'a> HeatMap<'a> {
         let value = self.reading.values.get(column, row);
         let (low, high) = self.range;
         value.map_or(f64::NAN, |value| (value - low) / (high - low))
+    }
+
+    fn shade(&self, share: f64) -> char {
+        value::character(share, self.theme.ascii)
     }
 
     /// Returns the imprint if it is what is shown.
@@ -124,19 +139,15 @@ impl<'a> HeatMap<'a> {
                 (sign, self.theme.style(role), role == Role::Inactive)
             }
             None => {
-                let style = shades::style(self.theme, share);
-                (shades::shade(self.theme, share), style, share <= 0.0)
+                let style = style(self.theme, share);
+                (self.shade(share), style, share <= 0.0)
             }
         };
         let fill = if is_low { ' ' } else { sign };
         let imprint = self.reading.imprint.as_ref();
         let is_marked = self.layer != HeatLayer::Imprint
             && imprint.is_some_and(|imprint| is_edge(imprint, column, row));
-        let second = if is_marked {
-            shades::edge(self.theme)
-        } else {
-            fill
-        };
+        let second = if is_marked { edge(self.theme) } else { fill };
         Look {
             signs: [sign, second],
             fill,
@@ -152,8 +163,8 @@ impl<'a> HeatMap<'a> {
             [upper, lower] if lower > upper || upper.is_nan() => lower,
             [upper, _] => upper,
         };
-        let shade = shades::shade(self.theme, larger);
-        let style = shades::style(self.theme, larger);
+        let shade = self.shade(larger);
+        let style = style(self.theme, larger);
         let (sign, style) = if let Some(imprint) = self.shown_imprint() {
             let [upper, lower] = [row, row + 1].map(|row| imprint.get(column, row));
             let role = if upper || lower {
@@ -163,9 +174,9 @@ impl<'a> HeatMap<'a> {
             };
             (self.theme.half(upper, lower), self.theme.style(role))
         } else if self.is_beside(column, row) {
-            (shades::edge(self.theme), style)
-        } else if shades::has_halves(self.theme) {
-            match shares.map(|share| shades::color(self.theme, share)) {
+            (edge(self.theme), style)
+        } else if has_halves(self.theme) {
+            match shares.map(|share| color(self.theme, share)) {
                 [Some(upper), Some(lower)] => ('▀', Style::new().fg(upper).bg(lower)),
                 [Some(upper), None] => ('▀', Style::new().fg(upper)),
                 [None, Some(lower)] => ('▄', Style::new().fg(lower)),
@@ -206,12 +217,8 @@ impl<'a> HeatMap<'a> {
                 _ => "vvvv".to_owned(),
             };
             let is_active = self.reading.imprint.is_some_and(|own| own.get(column, row));
-            let mark = if is_active {
-                shades::edge(self.theme)
-            } else {
-                ' '
-            };
-            let style = shades::style(self.theme, self.share(column, row));
+            let mark = if is_active { edge(self.theme) } else { ' ' };
+            let style = style(self.theme, self.share(column, row));
             let text = format!("{text:>DIGITS$}{mark}");
             buffer.set_stringn(place.x, place.y, text, place.width.into(), style);
         }
@@ -242,6 +249,28 @@ fn looked_at(live: &Live, reading: &LiveReading) -> (u8, u8) {
     live.looked_at.or(middle).or(largest).unwrap_or_default()
 }
 
+fn has_halves(theme: &Theme) -> bool {
+    let many = matches!(theme.depth, ColorDepth::TwoFiftySix | ColorDepth::True);
+    many && !theme.ascii && theme.palette != Palette::Mono
+}
+
+fn color(theme: &Theme, share: f64) -> Option<Color> {
+    let step = value::shade(share, TONES.len() + 1).checked_sub(1)?;
+    match theme.palette {
+        Palette::Dark => theme.color(TONES[step]),
+        Palette::Light => theme.color(TONES[TONES.len() - 1 - step]),
+        Palette::Mono => None,
+    }
+}
+
+fn style(theme: &Theme, share: f64) -> Style {
+    color(theme, share).map_or(Style::new(), |color| Style::new().fg(color))
+}
+
+fn edge(theme: &Theme) -> char {
+    if theme.ascii { 'o' } else { '•' }
+}
+
 fn is_edge(imprint: &Imprint, column: u8, row: u8) -> bool {
     let is_inside = imprint.get(column.wrapping_sub(1), row)
         && imprint.get(column + 1, row)
@@ -252,7 +281,7 @@ fn is_edge(imprint: &Imprint, column: u8, row: u8) -> bool {
 
 /// Returns the scale of the shades: the lower end of the range, the shades, the upper end and the unit.
 pub(super) fn scale(theme: &Theme, (low, high): (f64, f64), unit: &str) -> String {
-    let shades: String = shades::shades(theme).iter().skip(1).collect();
+    let shades: String = value::characters(theme.ascii).iter().skip(1).collect();
     format!("{} {shades} {}{unit}", measured(low, 7), measured(high, 7))
 }
 
@@ -338,5 +367,30 @@ impl LivePanes {
             panel.height = self.map.height;
         }
         (plot.height >= trend::LEAST).then_some((plot, panel))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns the relative luminance, from 0 to 1.
+    fn luminance(rgb: [u8; 3]) -> f64 {
+        let linear = rgb.map(|part| libm::pow(f64::from(part) / 255.0, 2.2));
+        0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+    }
+
+    fn of_index(index: u8) -> [u8; 3] {
+        let level = |place: u8| [0, 95, 135, 175, 215, 255][usize::from((index - 16) / place % 6)];
+        [level(36), level(6), level(1)]
+    }
+
+    #[test]
+    fn each_step_is_lighter_than_the_one_before() {
+        for pair in TONES.windows(2) {
+            assert!(luminance(pair[0].2) < luminance(pair[1].2), "{pair:?}");
+            let [dark, light] = [pair[0].1, pair[1].1].map(of_index).map(luminance);
+            assert!(dark < light, "{pair:?}");
+        }
     }
 }

@@ -209,7 +209,7 @@ impl Live {
 
     /// Returns the values at both ends of the shades.
     pub fn ends(&self) -> (f64, f64) {
-        let is_tared = self.pipeline.origin().is_some();
+        let is_tared = self.pipeline.origin.is_some();
         self.range.ends(self.layer, self.reading.as_ref(), is_tared)
     }
 
@@ -258,7 +258,7 @@ impl Live {
 
     /// Adds the values of a frame to the range, and its force and contact to the plot.
     fn measure(&mut self, frame: &Frame) {
-        if let Ok(processed) = self.pipeline.run(frame) {
+        if let Ok(processed) = self.pipeline.processing.run(frame) {
             self.range.add([processed.raw, processed.tared]);
             self.trend.push(Some(&processed));
             return;
@@ -282,9 +282,9 @@ impl Live {
 
     /// Changes the tare or the threshold. Afterwards range and plot are computed again from the last frames.
     fn repipe<T>(&mut self, act: impl FnOnce(&mut Pipeline) -> T) -> T {
-        let before = (self.pipeline.origin(), self.pipeline.rule());
+        let before = (self.pipeline.origin, self.pipeline.rule());
         let done = act(&mut self.pipeline);
-        let after = (self.pipeline.origin(), self.pipeline.rule());
+        let after = (self.pipeline.origin, self.pipeline.rule());
         if after.0 != before.0 {
             self.range.begin_anew();
         }

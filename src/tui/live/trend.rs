@@ -9,7 +9,7 @@
 use std::collections::VecDeque;
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::{Position, Rect};
+use ratatui::layout::Rect;
 use taxel_core::frame::Processed;
 use taxel_files::formats::value::measured;
 
@@ -104,10 +104,8 @@ pub fn draw(live: &Live, theme: &Theme, buffer: &mut Buffer, area: Rect) {
                 1 => theme.half(false, true),
                 _ => theme.half(true, true),
             };
-            let at = Position::new(bars.x + narrow(x), bars.y + line);
-            if let Some(cell) = buffer.cell_mut(at) {
-                cell.set_char(sign).set_style(style);
-            }
+            let at = (bars.x + narrow(x), bars.y + line);
+            write::sign(buffer, at, sign, style);
         }
     }
 }

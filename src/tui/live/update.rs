@@ -178,7 +178,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) {
 /// Returns the notice about a tare that was made just now of this number of frames. If the page stays at a frame, these
 /// end with it, and the notice says so.
 fn tare_of(page: &Live, frames: u64) -> String {
-    let origin = page.pipeline.origin().filter(|_| !page.history.follows());
+    let origin = page.pipeline.origin.filter(|_| !page.history.follows());
     let last = origin.and_then(|origin| origin.last);
     match (last.map(|(number, _)| number), frames) {
         (Some(number), 1) => format!("tare of frame {number}"),
@@ -191,7 +191,7 @@ fn tare_of(page: &Live, frames: u64) -> String {
 fn next_layer(app: &mut App, page: &mut Live) {
     page.layer = page.layer.next();
     page.read();
-    let shows_raw = page.pipeline.origin().is_none() && page.pipeline.processing.gain.is_none();
+    let shows_raw = page.pipeline.origin.is_none() && page.pipeline.processing.gain.is_none();
     match page.layer {
         HeatLayer::Tared if shows_raw => inform(app, "no tare: the values are the raw ones"),
         HeatLayer::Imprint if page.rule().is_none() => {

@@ -155,8 +155,7 @@ fn panes(live: &Live, area: Rect) -> LivePanes {
 fn hides_taxels(live: &Live, area: Rect) -> bool {
     live.shown_reading().is_some_and(|reading| {
         let map = panes(live, area).map;
-        let grid = heat::grid(map, &reading.values, live.numbers, (0, 0));
-        !(grid.columns.is_whole() && grid.rows.is_whole())
+        !heat::grid(map, &reading.values, live.numbers, (0, 0)).is_whole()
     })
 }
 
@@ -192,7 +191,10 @@ fn lines(
     let rate = live.rate().map(|rate| format!("{}/s", fitting(rate, 5)));
     lines.push(("rate", rate.unwrap_or_else(|| theme.none().to_owned())));
     lines.push(("dropped", dropped(live)));
-    lines.push(("not drawn", grouped(live.not_drawn + live.status.overflowed)));
+    lines.push((
+        "not drawn",
+        grouped(live.not_drawn + live.status.overflowed),
+    ));
     let gaps = live.status.gaps;
     if gaps.count > 0 {
         let missing = value::decimal(gaps.missing, 1);
@@ -300,7 +302,7 @@ fn tare(live: &Live) -> String {
     if let Some(progress) = live.pipeline.progress() {
         return progress_text(progress);
     }
-    let Some(origin) = live.pipeline.origin() else {
+    let Some(origin) = live.pipeline.origin else {
         return "none".to_owned();
     };
     let frames = counted(origin.frames, "frame");
@@ -388,7 +390,11 @@ fn of_state(live: &Live) -> Vec<(String, Role)> {
     }
     if let Some(back) = live.history.behind() {
         let behind = format!("frozen, {} behind", counted(back, "frame"));
-        let frozen = if back > 0 { behind } else { "frozen".to_owned() };
+        let frozen = if back > 0 {
+            behind
+        } else {
+            "frozen".to_owned()
+        };
         say(frozen, Role::Focus);
     }
     if live.recording.name.is_some() {
@@ -398,7 +404,7 @@ fn of_state(live: &Live) -> Vec<(String, Role)> {
         say("source ended".to_owned(), Role::Quiet);
     }
     let layer = match live.layer {
-        HeatLayer::Tared if live.pipeline.origin().is_none() => HeatLayer::Raw,
+        HeatLayer::Tared if live.pipeline.origin.is_none() => HeatLayer::Raw,
         layer => layer,
     };
     say(layer.name().to_owned(), Role::Quiet);

@@ -47,10 +47,10 @@ pub trait FormField {
 /// One of them has the focus, or none if another row of the form has it.
 #[derive(Clone, Debug)]
 pub struct FieldList<F> {
-    fields: Vec<F>,
+    pub(crate) fields: Vec<F>,
     other_row: bool,
-    focus: Option<usize>,
-    sensor: Sensor,
+    pub(crate) focus: Option<usize>,
+    pub(crate) sensor: Sensor,
 }
 
 impl<F: FormField> FieldList<F> {
@@ -61,22 +61,6 @@ impl<F: FormField> FieldList<F> {
             focus: None,
             sensor,
         }
-    }
-
-    pub fn fields(&self) -> &[F] {
-        &self.fields
-    }
-
-    pub fn fields_mut(&mut self) -> &mut [F] {
-        &mut self.fields
-    }
-
-    pub fn sensor(&self) -> &Sensor {
-        &self.sensor
-    }
-
-    pub fn focus(&self) -> Option<usize> {
-        self.focus
     }
 
     pub fn set_focus(&mut self, focus: Option<usize>) {
@@ -221,8 +205,6 @@ fn draw_field<F: FormField>(
     (Position::new(column(cursor), row.y), column(width + 1))
 }
 
-const WIDE: u16 = 40;
-
 /// Draws what is allowed beside a field, and below it what is wrong with it or a remark; on a single line, the error
 /// or both.
 fn draw_remarks<F: FormField>(
@@ -243,16 +225,10 @@ fn draw_remarks<F: FormField>(
         (None, remark) => remark.map(|remark| (remark, Role::Quiet)),
     };
     let under = write::right_of(write::row(row, 1), row.x.saturating_add(2));
-    // In a narrow form, what is allowed has no room beside the field.
-    let beside = match row.width {
-        ..WIDE if under.height > 0 => under,
-        _ => write::right_of(row, after),
-    };
+    let beside = write::right_of(row, after);
     match second {
         Some((text, role)) if under.height > 0 => {
-            if beside != under {
-                write::text(buffer, beside, theme, &range, Role::Quiet);
-            }
+            write::text(buffer, beside, theme, &range, Role::Quiet);
             write::text(buffer, under, theme, text, role);
         }
         Some((error, Role::Error)) => {

@@ -17,5 +17,3 @@ pub mod theme;
 pub mod plot;
 
 pub mod write;
-
-pub mod shades;

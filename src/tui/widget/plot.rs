@@ -106,9 +106,7 @@ impl PlotField {
         let upward = (self.field.y..bottom).map(|y| (left, y, down));
         let right = (self.field.x..self.field.right()).map(|x| (x, bottom, across));
         for (x, y, sign) in upward.chain(right).chain([(left, bottom, corner)]) {
-            if let Some(cell) = buffer.cell_mut(Position::new(x, y)) {
-                cell.set_char(sign).set_style(theme.style(Role::Quiet));
-            }
+            write::sign(buffer, (x, y), sign, theme.style(Role::Quiet));
         }
     }
 
@@ -121,9 +119,8 @@ impl PlotField {
             let Some(at) = self.character((middle, *value)) else {
                 continue;
             };
-            if let Some(cell) = buffer.cell_mut(Position::new(left, at.y)) {
-                cell.set_char(if theme.ascii { '+' } else { '┤' });
-            }
+            let mark = if theme.ascii { '+' } else { '┤' };
+            write::sign(buffer, (left, at.y), mark, theme.style(Role::Quiet));
             if last != Some(at.y) {
                 let room = usize::from(left - self.area.x).saturating_sub(1);
                 let text = format!("{text:>room$}");
@@ -147,9 +144,8 @@ impl PlotField {
             let Some(at) = self.character((value, middle)) else {
                 continue;
             };
-            if let Some(cell) = buffer.cell_mut(Position::new(at.x, bottom)) {
-                cell.set_char(if theme.ascii { '+' } else { '┬' });
-            }
+            let mark = if theme.ascii { '+' } else { '┬' };
+            write::sign(buffer, (at.x, bottom), mark, theme.style(Role::Quiet));
             let width = narrow(write::width(&text));
             let from = at.x.saturating_sub(width / 2);
             if from >= free && from + width < end {
@@ -170,10 +166,8 @@ impl PlotField {
 
     pub fn draw_lines(&self, theme: &Theme, buffer: &mut Buffer, canvas: &DotCanvas, style: Style) {
         for (column, row, dots) in canvas.characters() {
-            let at = Position::new(self.field.x + column, self.field.y + row);
-            if let Some(cell) = buffer.cell_mut(at) {
-                cell.set_char(glyph(theme, dots)).set_style(style);
-            }
+            let at = (self.field.x + column, self.field.y + row);
+            write::sign(buffer, at, glyph(theme, dots), style);
         }
     }
 
@@ -199,9 +193,7 @@ impl PlotField {
                 10..100 => 'O',
                 _ => '@',
             };
-            if let Some(cell) = buffer.cell_mut(at) {
-                cell.set_char(mark).set_style(style);
-            }
+            write::sign(buffer, at.into(), mark, style);
         }
         let legend = if theme.ascii {
             LEGEND.replace('·', ".").replace('–', "-")

@@ -13,7 +13,7 @@ pub struct TextField {
     input: Input,
     longest: usize,
     /// Whether the field was just entered, so that the next typed character replaces the text.
-    fresh: bool,
+    pub(crate) fresh: bool,
     /// The number of pasted characters that the last message left out, because there was no room for them.
     left_out: usize,
 }
@@ -32,10 +32,6 @@ impl TextField {
     pub fn enter(&mut self) {
         self.edit(InputRequest::GoToEnd);
         self.fresh = true;
-    }
-
-    pub fn fresh(&self) -> bool {
-        self.fresh
     }
 
     pub fn text(&self) -> &str {

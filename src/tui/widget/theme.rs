@@ -87,27 +87,7 @@ pub type Glyphs = [char; 2];
 pub(in crate::tui) type Tone = (Color, u8, [u8; 3]);
 
 /// Bright colours of the sixteen are not used: some terminals show them as bold, some not at all.
-fn tone(role: Role, palette: Palette) -> Option<Tone> {
-    match (palette, role) {
-        (Palette::Dark, Role::Title) => Some((Color::Cyan, 80, [95, 215, 215])),
-        (Palette::Dark, Role::Chosen) => Some((Color::Green, 114, [135, 215, 135])),
-        (Palette::Dark, Role::Active) => Some((Color::Blue, 75, [95, 175, 255])),
-        (Palette::Dark | Palette::Light, Role::Surplus | Role::Missing) => {
-            tone(Role::Error, palette)
-        }
-        (Palette::Dark, Role::Hole) => Some((Color::Yellow, 221, [255, 215, 95])),
-        (Palette::Dark, Role::Error) => Some((Color::Red, 203, [255, 95, 95])),
-        (Palette::Light, Role::Title) => Some((Color::Blue, 25, [0, 95, 175])),
-        (Palette::Light, Role::Chosen) => Some((Color::Green, 28, [0, 135, 0])),
-        (Palette::Light, Role::Active) => Some((Color::Cyan, 31, [0, 135, 175])),
-        // Yellow on white cannot be read.
-        (Palette::Light, Role::Hole) => Some((Color::Magenta, 130, [175, 95, 0])),
-        (Palette::Light, Role::Error) => Some((Color::Red, 160, [215, 0, 0])),
-        _ => None,
-    }
-}
-
-const DARK_TINTS: [Tone; 6] = [
+const DARK: [Tone; 6] = [
     (Color::Cyan, 80, [95, 215, 215]),
     (Color::Yellow, 221, [255, 215, 95]),
     (Color::Blue, 75, [95, 175, 255]),
@@ -115,7 +95,8 @@ const DARK_TINTS: [Tone; 6] = [
     (Color::Magenta, 176, [215, 135, 215]),
     (Color::Red, 203, [255, 95, 95]),
 ];
-const LIGHT_TINTS: [Tone; 6] = [
+/// Yellow on white cannot be read.
+const LIGHT: [Tone; 6] = [
     (Color::Cyan, 31, [0, 135, 175]),
     (Color::Magenta, 130, [175, 95, 0]),
     (Color::Blue, 25, [0, 95, 175]),
@@ -145,10 +126,15 @@ impl Theme {
             }
             Role::Text | Role::Active | Role::Chosen | Role::Hole => Style::new(),
         };
-        match tone(role, self.palette) {
-            Some(tone) => self.coloured(style, tone),
-            None => style,
-        }
+        let tint = match (role, self.palette) {
+            (Role::Title, Palette::Dark) | (Role::Active, Palette::Light) => 0,
+            (Role::Hole, _) => 1,
+            (Role::Title | Role::Active, _) => 2,
+            (Role::Chosen, _) => 3,
+            (Role::Error | Role::Surplus | Role::Missing, _) => 5,
+            _ => return style,
+        };
+        style.patch(self.tint(tint))
     }
 
     pub(in crate::tui) fn color(self, (named, index, [red, green, blue]): Tone) -> Option<Color> {
@@ -160,17 +146,14 @@ impl Theme {
         }
     }
 
-    fn coloured(self, style: Style, tone: Tone) -> Style {
-        self.color(tone).map_or(style, |color| style.fg(color))
-    }
-
     pub fn tint(&self, number: usize) -> Style {
         let tints = match self.palette {
-            Palette::Dark => &DARK_TINTS,
-            Palette::Light => &LIGHT_TINTS,
+            Palette::Dark => DARK,
+            Palette::Light => LIGHT,
             Palette::Mono => return Style::new(),
         };
-        self.coloured(Style::new(), tints[number % tints.len()])
+        let color = self.color(tints[number % tints.len()]);
+        color.map_or(Style::new(), |color| Style::new().fg(color))
     }
 
     pub fn taxel(&self, role: Role) -> Glyphs {

@@ -8,6 +8,7 @@ use std::borrow::Cow;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use ratatui::style::Style;
 use ratatui::text::Span;
 
 use crate::tui::widget::text_field::TextField;
@@ -37,6 +38,13 @@ pub fn line<'a>(
     x
 }
 
+/// Writes a character; does nothing beyond the buffer.
+pub fn sign(buffer: &mut Buffer, (x, y): (u16, u16), sign: char, style: Style) {
+    if let Some(cell) = buffer.cell_mut((x, y)) {
+        cell.set_char(sign).set_style(style);
+    }
+}
+
 /// Writes a text into the first line of an area. If it does not fit, it is cut short with an ellipsis. Returns the
 /// column after it.
 pub fn text(buffer: &mut Buffer, area: Rect, theme: &Theme, text: &str, role: Role) -> u16 {
@@ -64,13 +72,9 @@ pub fn fitted<'a>(text: &'a str, room: usize, theme: &Theme) -> Cow<'a, str> {
 }
 
 pub fn row(area: Rect, index: usize) -> Rect {
-    let index = narrow(index);
-    let inside = index < area.height;
-    Rect {
-        y: area.y.saturating_add(if inside { index } else { 0 }),
-        height: u16::from(inside),
-        ..area
-    }
+    let below = below(area, narrow(index));
+    let height = below.height.min(1);
+    Rect { height, ..below }
 }
 
 /// Returns the index of the first visible row, so that the selected row is as near to the middle as the ends allow.
