@@ -212,8 +212,8 @@ impl Jobs {
 
     /// With shapes in a temporary library, and with unsaved work of crashed programs, the newest last.
     pub fn with_contents(
-        shapes: &[&StoredShape],
-        leftovers: &[&StoredShape],
+        shapes: &[StoredShape],
+        leftovers: &[StoredShape],
     ) -> Result<Self, String> {
         let folder = temporary_folder().map_err(|error| error.to_string())?;
         let library = Library::open(folder.path().join("library"));
@@ -221,9 +221,8 @@ impl Jobs {
         for shape in shapes {
             library.save(shape, Expected::Nothing).map_err(sentence)?;
         }
-        let leftovers: Vec<StoredShape> = leftovers.iter().copied().cloned().collect();
         // A dropped journal leaves its work behind, as a crash does.
-        (Journal::new(&library).keep(leftovers)).map_err(|error| error.to_string())?;
+        (Journal::new(&library).keep(leftovers.to_vec())).map_err(|error| error.to_string())?;
         Ok(Self::new(library).owning(folder))
     }
 

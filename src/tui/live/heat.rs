@@ -322,35 +322,32 @@ impl LivePanes {
             ..area
         };
         let rest = below(area, 1);
-        let width = values.map_or(0, |values| {
-            let room = |panel: u16| Rect {
-                width: rest.width.saturating_sub(GAP + panel),
-                ..rest
+        let Some(values) = values else {
+            let map = Rect { width: 0, ..rest };
+            return Self {
+                title,
+                map,
+                panel: rest,
             };
-            let large = grid(room(WIDE_PANEL), values, numbers, (0, 0));
-            let beside = grid(room(PANEL), values, numbers, (0, 0));
-            let right = |grid: &Grid| grid.x + grid.characters().0 - rest.x;
-            match (large.size, beside.size) {
-                (CellSize::Square(_), _) => right(&large),
-                (_, CellSize::Square(_)) => 2 * u16::from(values.columns()),
-                _ => right(&beside),
-            }
-        });
-        let gap = if values.is_some() { GAP } else { 0 };
-        let height = values.map_or(rest.height, |values| {
-            let map = Rect { width, ..rest };
-            let grid = grid(map, values, numbers, (0, 0));
-            grid.y + grid.characters().1 - rest.y
-        });
-        Self {
-            title,
-            map: Rect {
-                width,
-                height: height.min(rest.height),
-                ..rest
-            },
-            panel: right_of(rest, rest.x + width + gap),
-        }
+        };
+        let within = |width: u16| grid(Rect { width, ..rest }, values, numbers, (0, 0));
+        let room = |panel: u16| within(rest.width.saturating_sub(GAP + panel));
+        let right = |grid: &Grid| grid.x + grid.characters().0 - rest.x;
+        let (large, beside) = (room(WIDE_PANEL), room(PANEL));
+        let width = match (large.size, beside.size) {
+            (CellSize::Square(_), _) => right(&large),
+            (_, CellSize::Square(_)) => 2 * u16::from(values.columns()),
+            _ => right(&beside),
+        };
+        let grid = within(width);
+        let height = (grid.y + grid.characters().1 - rest.y).min(rest.height);
+        let map = Rect {
+            width,
+            height,
+            ..rest
+        };
+        let panel = right_of(rest, rest.x + width + GAP);
+        Self { title, map, panel }
     }
 
     /// Returns the part below the taxels for a plot, and the part that is left of the panel: the plot is as wide as the

@@ -1,10 +1,9 @@
 //! Watches a source of frames on a thread of its own, so that neither a key nor a slow terminal holds it up. In a
 //! script, which has no clock, frames are read when they are asked for.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, IsTerminal};
 use std::ops::ControlFlow;
-use std::os::fd::AsFd;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::sync::Arc;
@@ -177,10 +176,8 @@ pub(super) fn record(app: &mut App, metadata: RecordingMetadata) {
 fn recording_begun(app: &mut App, number: u64, begun: Result<(String, Arc<Recording>), String>) {
     let watched = app.jobs.sources.watched.as_mut();
     let watched = watched.filter(|watched| watched.number == number);
-    let (name, recording) = match begun {
-        Ok((name, recording)) => (Ok(name), Some(recording)),
-        Err(refused) => (Err(refused), None),
-    };
+    let (name, recording) =
+        begun.map_or_else(|why| (Err(why), None), |(name, own)| (Ok(name), Some(own)));
     // The recording to finish: the new one if its source was left meanwhile, or another one that was still open.
     let over = match watched {
         Some(watched) => {
@@ -319,20 +316,14 @@ pub fn check(source: &FrameSource) -> Result<(), String> {
 }
 
 fn is_own_terminal(path: &Path) -> bool {
-    let device = |file: fs::Metadata| file.rdev();
-    let Ok(own) = fs::metadata(path).map(device) else {
+    let Ok(device) = path.metadata().map(|file| file.rdev()) else {
         return false;
     };
-    let (input, output, errors) = (io::stdin(), io::stdout(), io::stderr());
-    let mut streams = [input.as_fd(), output.as_fd(), errors.as_fd()].into_iter();
-    let controlling = fs::metadata("/dev/tty").map(device);
-    controlling.is_ok_and(|controlling| controlling == own)
-        || streams.any(|stream| {
-            let metadata = stream
-                .try_clone_to_owned()
-                .and_then(|file| File::from(file).metadata());
-            stream.is_terminal() && metadata.map(device).is_ok_and(|stream| stream == own)
-        })
+    let is_here = |name: &str| fs::metadata(name).is_ok_and(|file| file.rdev() == device);
+    is_here("/dev/tty")
+        || io::stdin().is_terminal() && is_here("/dev/stdin")
+        || io::stdout().is_terminal() && is_here("/dev/stdout")
+        || io::stderr().is_terminal() && is_here("/dev/stderr")
 }
 
 /// Whether the source is a file with content. Files of `/proc`, which may have to be waited for like pipes, are empty.

@@ -273,7 +273,7 @@ impl Live {
     /// Measures the last frames again, because the tare or the threshold has changed.
     fn measure_again(&mut self) {
         self.is_view_changed = true;
-        self.trend.clear();
+        self.trend.0.clear();
         let frames: Vec<_> = self.history.newest_first().take(RANGED).cloned().collect();
         for frame in frames.iter().rev() {
             self.measure(frame);
@@ -451,7 +451,7 @@ impl Live {
             self.history = FrameHistory::new(self.request.history_bytes);
             self.marks.clear();
             self.not_drawn = 0;
-            self.trend.clear();
+            self.trend.0.clear();
         }
         self.number = number;
         self.stopped = false;

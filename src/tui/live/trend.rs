@@ -23,7 +23,7 @@ pub(super) const LEAST: u16 = 3;
 
 /// Force and contact of the newest frames; NaN for a frame that cannot be processed.
 #[derive(Clone, Debug, Default)]
-pub struct Trend(VecDeque<[f64; 2]>);
+pub struct Trend(pub(crate) VecDeque<[f64; 2]>);
 
 impl Trend {
     pub fn push(&mut self, processed: Option<&Processed<'_>>) {
@@ -36,10 +36,6 @@ impl Trend {
         while self.0.len() as u64 > frames {
             self.0.pop_front();
         }
-    }
-
-    pub fn clear(&mut self) {
-        self.0.clear();
     }
 
     /// Returns the numbers of the frames in which a touch begins; the next frame has the number `next`.

@@ -381,12 +381,8 @@ impl Start {
                 return Err(text.to_owned());
             }
             Some(library) => Jobs::for_script(library.clone()),
-            None if has_shapes => {
-                let shapes: Vec<&StoredShape> = self.shapes.iter().collect();
-                let leftovers: Vec<&StoredShape> = self.leftovers.iter().collect();
-                Jobs::with_contents(&shapes, &leftovers)
-                    .map_err(|error| format!("the script's own library: {error}"))?
-            }
+            None if has_shapes => Jobs::with_contents(&self.shapes, &self.leftovers)
+                .map_err(|error| format!("the script's own library: {error}"))?,
             None => own,
         };
         if self.options.is_confined {
@@ -541,13 +537,8 @@ impl Runner<'_> {
         }
         let saved = fs::read_to_string(&path)
             .map_err(|error| failed("read", &error) + "; --update writes it")?;
-        let rows = |text: &str| {
-            text.lines()
-                .map(str::trim_end)
-                .map(str::to_owned)
-                .collect::<Vec<_>>()
-        };
-        if rows(&saved) == rows(&screen) {
+        let [expected, drawn] = [&saved, &screen].map(|text| text.lines().map(str::trim_end));
+        if expected.eq(drawn) {
             return Ok(());
         }
         let (saved, found) = (marked("-", &saved), marked("+", &screen));

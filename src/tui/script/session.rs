@@ -140,38 +140,46 @@ impl Session {
     }
 
     pub fn screen(&self) -> String {
-        self.rows(|_, symbol, row| row.push_str(symbol))
+        self.rows(|cell, row| row.push_str(cell.symbol()))
     }
 
     /// Returns the styles of the screen, one letter per character: `R` reversed, `B` bold, `D` dim, `.` plain.
     pub fn styles(&self) -> String {
-        self.rows(|cell, _, row| row.push(letter(&cell.style())))
+        self.rows(|cell, row| row.push(letter(&cell.style())))
     }
 
     pub fn svg(&self, title: &str) -> String {
         svg(&self.drawn().0, *self.app.theme(), title)
     }
 
-    fn rows(&self, add: impl Fn(&Cell, &str, &mut String)) -> String {
+    fn rows(&self, add: impl Fn(&Cell, &mut String)) -> String {
         let (buffer, _) = self.drawn();
-        let width = usize::from(buffer.area.width).max(1);
         let mut rows = String::with_capacity(buffer.content.len());
-        for row in buffer.content.chunks(width) {
+        for row in lines(&buffer) {
             let start = rows.len();
-            let mut cells = row.iter();
-            while let Some(cell) = cells.next() {
-                let symbol = cell.symbol();
-                add(cell, symbol, &mut rows);
-                // A wide character covers the cells after it.
-                for _ in 1..write::width(symbol) {
-                    cells.next();
-                }
-            }
+            characters(row).for_each(|(_, cell)| add(cell, &mut rows));
             rows.truncate(start + rows[start..].trim_end().len());
             rows.push('\n');
         }
         rows
     }
+}
+
+fn lines(buffer: &Buffer) -> impl Iterator<Item = &[Cell]> {
+    let width = usize::from(buffer.area.width).max(1);
+    buffer.content.chunks(width)
+}
+
+/// Returns the cells of a row with their columns, without those that a wide character before them covers.
+fn characters(row: &[Cell]) -> impl Iterator<Item = (usize, &Cell)> {
+    let mut free = 0;
+    row.iter().enumerate().filter(move |(column, cell)| {
+        let begins = *column >= free;
+        if begins {
+            free = column + write::width(cell.symbol());
+        }
+        begins
+    })
 }
 
 const WIDTH: u32 = 9;
@@ -212,24 +220,17 @@ pub(in crate::tui) fn svg(buffer: &Buffer, theme: Theme, title: &str) -> String 
          <g transform=\"translate({MARGIN} {MARGIN})\" font-size=\"{FONT}\" fill=\"{fore}\" \
          font-family=\"'DejaVu Sans Mono', 'Noto Sans Mono', Menlo, Consolas, monospace\">\n"
     );
-    for row in 0..area.height {
+    for (row, cells) in (0..).zip(lines(buffer)) {
         let mut runs: Vec<(u16, TextStyle, Vec<&str>)> = Vec::new();
-        let mut covered = 0;
-        for column in 0..area.width {
-            let cell = &buffer[(area.x + column, area.y + row)];
-            // A wide character covers the cell after it.
-            if covered > 0 {
-                covered -= 1;
-                if let Some((.., symbols)) = runs.last_mut() {
-                    symbols.push("");
-                }
-                continue;
-            }
-            covered = write::width(cell.symbol()).saturating_sub(1);
+        for (column, cell) in characters(cells) {
             let look = TextStyle::of(cell, ink, paper);
-            match runs.last_mut() {
-                Some((_, last, symbols)) if *last == look => symbols.push(cell.symbol()),
-                _ => runs.push((column, look, vec![cell.symbol()])),
+            if runs.last().is_none_or(|(_, last, _)| *last != look) {
+                runs.push((narrow(column), look, Vec::new()));
+            }
+            if let Some((.., symbols)) = runs.last_mut() {
+                let covered = write::width(cell.symbol()).saturating_sub(1);
+                symbols.push(cell.symbol());
+                symbols.extend(std::iter::repeat_n("", covered));
             }
         }
         for (column, look, symbols) in runs {

@@ -79,8 +79,7 @@ pub fn run(
         screen: Screen::new(size(settings), settings.abilities),
         is_writing: true,
         status: None,
-        frames_due: None,
-        frames_at: None,
+        frames_due: Instant::now(),
     };
     let ended = catch_unwind(AssertUnwindSafe(|| event_loop.run(first)));
     let mut app = event_loop.app;
@@ -129,9 +128,8 @@ struct EventLoop<'a> {
     is_writing: bool,
     /// How the program ended; None while it runs.
     status: Option<u8>,
-    /// The time at which to take frames next; None if there are none.
-    frames_due: Option<Instant>,
-    frames_at: Option<Instant>,
+    /// The time before which no frames are taken.
+    frames_due: Instant,
 }
 
 impl EventLoop<'_> {
@@ -169,7 +167,8 @@ impl EventLoop<'_> {
 
     /// Sleeps until something happens; None if frames are to be taken or a change of a file is due.
     fn wait(&self) -> Option<Event> {
-        let due = [self.frames_due, self.app.jobs.due()];
+        let frames = self.has_frames().then_some(self.frames_due);
+        let due = [frames, self.app.jobs.due()];
         match due.into_iter().flatten().min() {
             Some(due) => {
                 let patience = due.saturating_duration_since(Instant::now());
@@ -199,22 +198,19 @@ impl EventLoop<'_> {
         }
     }
 
-    /// Takes the frames that have come, if the last picture is old enough and the terminal has taken it; frames that
-    /// come meanwhile are taken together.
+    /// Whether there are frames to draw, and the terminal has taken the last picture.
+    fn has_frames(&self) -> bool {
+        self.app.jobs.sources.has_new() && !self.is_writing
+    }
+
+    /// Takes the frames that have come, if the last picture is old enough; frames that come meanwhile are taken together.
     fn take_frames(&mut self) {
-        self.frames_due = None;
-        if !self.app.jobs.sources.has_new() || self.is_writing {
-            return;
-        }
         let now = Instant::now();
-        let due = self.frames_at.map_or(now, |last| last + PICTURE);
-        if due > now {
-            self.frames_due = Some(due);
-            return;
+        if self.has_frames() && self.frames_due <= now {
+            self.frames_due = now + PICTURE;
+            self.app.jobs.later(source::take);
+            self.update(Message::Answered);
         }
-        self.frames_at = Some(now);
-        self.app.jobs.later(source::take);
-        self.update(Message::Answered);
     }
 
     fn update(&mut self, message: Message) {

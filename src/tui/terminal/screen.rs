@@ -15,9 +15,9 @@ use crate::tui::widget::write::{self, narrow};
 const SMALL_FRAME: usize = 256;
 
 const BEGIN_SYNCHRONIZED: &str = "\x1b[?2026h";
-const END_SYNCHRONIZED: &str = "\x1b[?2026l";
+pub(super) const END_SYNCHRONIZED: &str = "\x1b[?2026l";
 const HIDE_CURSOR: &str = "\x1b[?25l";
-const SHOW_CURSOR: &str = "\x1b[?25h";
+pub(super) const SHOW_CURSOR: &str = "\x1b[?25h";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Abilities {

@@ -16,6 +16,7 @@ use signal_hook::consts::SIGHUP;
 use taxel_core::lock::locked;
 
 use crate::tui::terminal::event_loop::Event;
+use crate::tui::terminal::screen::{END_SYNCHRONIZED, SHOW_CURSOR};
 use crate::tui::terminal::settings::TerminalSettings;
 
 /// Second screen, and pasted text marked.
@@ -27,10 +28,6 @@ const MOUSE: [&str; 2] = [
 ];
 /// Moves to the last row: terminals clamp 999 to it.
 const BELOW: &str = "\x1b[999;1H\r\n";
-/// A frame may be unfinished, in its style, with the cursor hidden.
-const SHOW: &str = "\x1b[?25h";
-const SHOW_FRAME: &str = "\x1b[?2026l";
-const PLAIN: &str = "\x1b[m";
 
 /// How long leaving waits for a terminal that takes no output.
 const LAST_WRITE: Duration = Duration::from_millis(200);
@@ -77,9 +74,10 @@ pub(super) fn enter(
         }
     });
     let mut hello = String::new();
-    let mut goodbye = SHOW.to_owned();
+    // A frame may be unfinished, in its style, with the cursor hidden.
+    let mut goodbye = SHOW_CURSOR.to_owned();
     if settings.abilities.synchronized {
-        goodbye += SHOW_FRAME;
+        goodbye += END_SYNCHRONIZED;
     }
     for ([on, off], wanted) in [(MOUSE, settings.mouse), (MODES, settings.kind.has_modes())] {
         if wanted {
@@ -88,7 +86,7 @@ pub(super) fn enter(
         }
     }
     if settings.abilities.styles {
-        goodbye += PLAIN;
+        goodbye += "\x1b[m";
     }
     if !settings.kind.has_modes() {
         goodbye += BELOW;

@@ -225,10 +225,16 @@ fn draw_remarks<F: FormField>(
         (None, remark) => remark.map(|remark| (remark, Role::Quiet)),
     };
     let under = write::right_of(write::row(row, 1), row.x.saturating_add(2));
-    let beside = write::right_of(row, after);
+    // Beside the descriptors, what is allowed has no room beside the field.
+    let beside = match row.width {
+        ..40 if under.height > 0 => under,
+        _ => write::right_of(row, after),
+    };
     match second {
         Some((text, role)) if under.height > 0 => {
-            write::text(buffer, beside, theme, &range, Role::Quiet);
+            if beside != under {
+                write::text(buffer, beside, theme, &range, Role::Quiet);
+            }
             write::text(buffer, under, theme, text, role);
         }
         Some((error, Role::Error)) => {
