@@ -16,7 +16,7 @@ use crate::cli::commands::export::{replacing, written};
 use crate::cli::commands::model::{fits_in_table, model_file};
 use crate::cli::commands::sweep::atlas;
 use crate::cli::failure::{Failure, Named};
-use crate::cli::output::evaluation::{self, EvaluationJson};
+use crate::cli::output::evaluation::{self, NamedBy};
 use crate::cli::output::sweep_summary;
 
 const EXAMPLES: &str = "\
@@ -72,15 +72,11 @@ impl Merge {
                 memory.check().map_err(Failure::new)?;
             }
             let model = merge.finish()?;
-            let evaluation = &Evaluation::of(&model);
-            let classifier = None;
+            let limit = Evaluation::of(&model);
             let text = if self.json {
-                json::ascii(&EvaluationJson {
-                    evaluation,
-                    classifier,
-                }) + "\n"
+                json::ascii(&evaluation::record(&limit, None)) + "\n"
             } else {
-                evaluation::summary(evaluation, evaluation::NamedBy::Imprint)
+                evaluation::summary(&limit, NamedBy::Imprint)
             };
             (text, save_model(&model, &self.out, existing))
         } else {

@@ -117,7 +117,7 @@ impl Sweep {
         let new = |path| PoseFile::new(path, &grid, existing);
         let mut poses = self.poses.as_ref().map(new).transpose()?;
         let shard = self.shard.unwrap_or(Shard::WHOLE);
-        let display = ProgressDisplay::new(shard.poses(&grid), self.quiet);
+        let display = ProgressDisplay::new("poses", shard.poses(&grid), self.quiet);
         let result = memory.limit(&signals.progress(&display), |progress| {
             let sweep = Sweeping::new(&grid)
                 .with_shard(shard)

@@ -1,68 +1,54 @@
 //! What an evaluation of a model says, in words and as a line of JSON. All numbers are counted touches, not estimates.
 
-use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde_json::{Value, json};
 use taxel_core::parameter::number::share;
-use taxel_core::recognition::{ClassifierEvaluation, ConfusionMatrix, Evaluation};
+use taxel_core::recognition::{ClassifierEvaluation, Evaluation};
 use taxel_files::formats::value::{counted, grouped, percent};
 
-use crate::cli::output::table::{row, table};
+use crate::cli::output::table::{Record, row, table};
 
 /// A count in JSON: a number, or a text if it is beyond 64 bits, as weights may cause.
-#[derive(Clone, Copy)]
-pub(crate) struct Count(pub(crate) u128);
+pub(crate) fn count(count: u128) -> Value {
+    u64::try_from(count).map_or_else(|_| count.to_string().into(), Value::from)
+}
 
-impl Serialize for Count {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match u64::try_from(self.0) {
-            Ok(count) => serializer.serialize_u64(count),
-            Err(_) => serializer.collect_str(&self.0),
+/// An evaluation in JSON. In `confusion`, a row is a true shape, a column the name that it is given.
+pub(crate) fn record(
+    own: &Evaluation,
+    classifier: Option<&ClassifierEvaluation>,
+) -> Record<'static> {
+    let row = |counts: Vec<u128>| counts.into_iter().map(count).collect::<Value>();
+    let mut record = vec![
+        ("labels", json!(own.labels)),
+        ("touches", count(own.touches)),
+        ("right", count(own.right)),
+        ("accuracy", json!(own.accuracy())),
+        ("error", json!(own.error())),
+        (
+            "certain",
+            own.certainty.map(|own| count(own.touches)).into(),
+        ),
+        ("tied", count(own.tied)),
+        ("right_in_top_two", count(own.right_in_top_two)),
+        ("information_bits", json!(own.information_bits)),
+        ("prior_bits", json!(own.prior_bits)),
+        ("keys", json!(own.keys)),
+        (
+            "keys_of_one_shape",
+            json!(own.certainty.map(|own| own.keys)),
+        ),
+        ("confusion", own.confusion.rows().map(row).collect::<Value>()),
+    ];
+    if let Some(reached) = classifier {
+        record.push(("classifier", json!(reached.classifier.name())));
+        record.push(("features", json!(reached.features)));
+        record.push(("dropped", json!(reached.dropped)));
+        if let Some(sample) = reached.sample {
+            record.push(("sample", json!(sample.per_shape)));
+            record.push(("seed", json!(sample.seed)));
         }
     }
-}
-
-pub(crate) struct EvaluationJson<'a> {
-    pub(crate) evaluation: &'a Evaluation,
-    pub(crate) classifier: Option<&'a ClassifierEvaluation>,
-}
-
-impl Serialize for EvaluationJson<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let own = self.evaluation;
-        let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("labels", &own.labels)?;
-        map.serialize_entry("touches", &Count(own.touches))?;
-        map.serialize_entry("right", &Count(own.right))?;
-        map.serialize_entry("accuracy", &own.accuracy())?;
-        map.serialize_entry("error", &own.error())?;
-        map.serialize_entry("certain", &own.certainty.map(|own| Count(own.touches)))?;
-        map.serialize_entry("tied", &Count(own.tied))?;
-        map.serialize_entry("right_in_top_two", &Count(own.right_in_top_two))?;
-        map.serialize_entry("information_bits", &own.information_bits)?;
-        map.serialize_entry("prior_bits", &own.prior_bits)?;
-        map.serialize_entry("keys", &own.keys)?;
-        map.serialize_entry("keys_of_one_shape", &own.certainty.map(|own| own.keys))?;
-        map.serialize_entry("confusion", &Rows(&own.confusion))?;
-        if let Some(reached) = self.classifier {
-            map.serialize_entry("classifier", reached.classifier.name())?;
-            map.serialize_entry("features", &reached.features)?;
-            map.serialize_entry("dropped", &reached.dropped)?;
-            if let Some(sample) = reached.sample {
-                map.serialize_entry("sample", &sample.per_shape)?;
-                map.serialize_entry("seed", &sample.seed)?;
-            }
-        }
-        map.end()
-    }
-}
-
-/// A row is a true shape, a column the name that it is given.
-struct Rows<'a>(&'a ConfusionMatrix);
-
-impl Serialize for Rows<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let row = |counts: Vec<u128>| counts.into_iter().map(Count).collect::<Vec<_>>();
-        serializer.collect_seq(self.0.rows().map(row))
-    }
+    Record(record)
 }
 
 /// What the classifier of an evaluation knows of a touch.
@@ -79,49 +65,37 @@ pub(crate) const WEIGHTED: &str = "each touch counts with the weight of its shap
 pub(crate) fn summary(own: &Evaluation, named: NamedBy) -> String {
     let keys = own.keys as u64;
     let imprints = counted(keys, "distinct imprint") + " up to shifts";
-    let values = counted(keys, "distinct combination") + " of their values";
     let (distinct, limit, certain) = match named {
         NamedBy::Imprint => (
             imprints,
             "the limit: no method does better",
-            "leaves the same imprint",
+            "no other shape leaves the same imprint",
         ),
         NamedBy::Classifier => (imprints, "", ""),
         NamedBy::Descriptors => (
-            values,
+            counted(keys, "distinct combination") + " of their values",
             "no method that sees only these descriptors does better",
-            "has the same values",
+            "no other shape has the same values",
         ),
     };
-    let certain = format!("no other shape {certain}");
     let (touches, shapes) = (counted(own.touches, "touch"), own.labels.len() as u64);
     let mut text = format!("{touches} of {}, {distinct}\n", counted(shapes, "shape"));
     if own.is_weighted() {
         text += WEIGHTED;
     }
-    let row = |name: &str, count: u128, note: &str| {
-        row([
-            name,
-            &grouped(count),
-            &percent(share(count, own.touches)),
-            note,
-        ])
-    };
-    let mut rows = vec![
-        row("right", own.right, ""),
-        row("wrong", own.touches - own.right, limit),
+    let certain = own.certainty.map(|own| ("certain", own.touches, certain));
+    let counts = [
+        Some(("right", own.right, "")),
+        Some(("wrong", own.touches - own.right, limit)),
+        certain,
+        Some(("tied", own.tied, "the first of the tied shapes is named")),
+        Some(("in top two", own.right_in_top_two, "")),
     ];
-    rows.extend(
-        own.certainty
-            .map(|own| row("certain", own.touches, &certain)),
-    );
-    rows.push(row(
-        "tied",
-        own.tied,
-        "the first of the tied shapes is named",
-    ));
-    rows.push(row("in top two", own.right_in_top_two, ""));
-    text += &table(&rows, &[0, 3]);
+    let rows = counts.into_iter().flatten().map(|(name, count, note)| {
+        let part = percent(share(count, own.touches));
+        row([name, &grouped(count), &part, note])
+    });
+    text += &table(&rows.collect::<Vec<_>>(), &[0, 3]);
     let (bits, of) = (own.information_bits, own.prior_bits);
     text + &format!("information  {bits:.4} of {of:.4} bits\n")
 }

@@ -30,11 +30,7 @@ pub(crate) struct ProgressDisplay {
 }
 
 impl ProgressDisplay {
-    pub(crate) fn new(all: u64, quiet: bool) -> Self {
-        Self::counting("poses", all, quiet)
-    }
-
-    pub(crate) fn counting(noun: &'static str, all: u64, quiet: bool) -> Self {
+    pub(crate) fn new(noun: &'static str, all: u64, quiet: bool) -> Self {
         let bar = io::stderr()
             .is_terminal()
             .then_some(match Charset::current() {
@@ -108,7 +104,7 @@ mod tests {
 
     #[test]
     fn a_line_tells_what_is_left() {
-        let mut progress = ProgressDisplay::new(1000, true);
+        let mut progress = ProgressDisplay::new("poses", 1000, true);
         let elapsed = Duration::from_secs(10);
         progress.bar = None;
         let line = progress.line(250, elapsed);

@@ -3,29 +3,20 @@
 use std::iter;
 use std::time::Duration;
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 use taxel_core::atlas::{STATISTIC_COLUMNS, StatisticColumn};
 use taxel_core::pose::{Axis, Ranges};
-use taxel_core::sweep::SweepResult;
+use taxel_core::sweep::{Shard, SweepResult};
 use taxel_files::formats::json;
 use taxel_files::formats::value::{counted, grouped};
 
 use crate::cli::output::charset::Charset;
-use crate::cli::output::table::table;
-
-/// Pairs that JSON has as an object, in their order.
-struct Object<'a, V>(Vec<(&'a str, V)>);
-
-impl<V: Serialize> Serialize for Object<'_, V> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().map(|(key, value)| (key, value)))
-    }
-}
+use crate::cli::output::table::{Record, table};
 
 #[derive(Serialize)]
 struct SummaryJson<'a> {
     poses: u64,
-    ranges: Object<'a, String>,
+    ranges: Record<'a, String>,
     shard: String,
     distinct: usize,
     distinct_shifts: usize,
@@ -33,7 +24,7 @@ struct SummaryJson<'a> {
     partly_off: u64,
     empty: u64,
     seconds: f64,
-    descriptors: Object<'a, Object<'a, Option<f64>>>,
+    descriptors: Record<'a, Record<'a, Option<f64>>>,
 }
 
 /// Returns the summary: for people, or as a line of JSON.
@@ -51,11 +42,11 @@ fn json(result: &SweepResult, took: Duration) -> String {
     let descriptors = result.statistics.iter().map(|row| {
         let value = |column: &StatisticColumn| (column.key, (column.value)(row));
         let values = STATISTIC_COLUMNS.iter().map(value).collect();
-        (&*row.feature.key, Object(values))
+        (&*row.feature.key, Record(values))
     });
     let summary = SummaryJson {
         poses: result.poses,
-        ranges: Object(grid.axes().map(range).collect()),
+        ranges: Record(grid.axes().map(range).collect()),
         shard: result.shard.to_string(),
         distinct: atlas.len(),
         distinct_shifts: classes.up_to_shifts,
@@ -63,16 +54,16 @@ fn json(result: &SweepResult, took: Duration) -> String {
         partly_off: result.partly_off,
         empty: atlas.empty_poses(),
         seconds: took.as_secs_f64(),
-        descriptors: Object(descriptors.collect()),
+        descriptors: Record(descriptors.collect()),
     };
     json::text(&summary) + "\n"
 }
 
 fn text(result: &SweepResult, took: Duration) -> String {
     let SweepResult { grid, atlas, .. } = result;
-    let part = match result.shard.of() {
-        1 => String::new(),
-        _ => format!(", shard {}", result.shard),
+    let part = match result.shard {
+        Shard::WHOLE => String::new(),
+        shard => format!(", shard {shard}"),
     };
     // A picture is swept at its own size unless zooms are given, so zooms of one value are not shown.
     let ranges = grid.axes();
@@ -91,17 +82,17 @@ fn text(result: &SweepResult, took: Duration) -> String {
         counted(atlas.empty_poses(), "pose"),
         took.as_secs_f64(),
     );
-    let titles = STATISTIC_COLUMNS
-        .iter()
-        .map(|column| column.title.to_owned());
-    let mut rows = vec![iter::once(String::new()).chain(titles).collect::<Vec<_>>()];
-    rows.extend(result.statistics.iter().map(|row| {
-        let values = STATISTIC_COLUMNS.iter().map(|column| {
-            let value = (column.value)(row);
-            value.map_or("–".to_owned(), |value| format!("{value:.4}"))
-        });
-        iter::once(row.feature.key.clone()).chain(values).collect()
-    }));
+    let mut rows = vec![vec![String::new()]];
+    rows[0].extend(
+        STATISTIC_COLUMNS
+            .iter()
+            .map(|column| column.title.to_owned()),
+    );
+    for row in &result.statistics {
+        let values = STATISTIC_COLUMNS.iter().map(|column| (column.value)(row));
+        let values = values.map(|own| own.map_or("–".to_owned(), |own| format!("{own:.4}")));
+        rows.push(iter::once(row.feature.key.clone()).chain(values).collect());
+    }
     Charset::current().lines(&text) + &table(&rows, &[0])
 }
 

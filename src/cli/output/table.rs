@@ -47,9 +47,9 @@ pub(crate) fn table(rows: &[Vec<String>], left: &[usize]) -> String {
 }
 
 /// Named values, which JSON has as an object and CSV as a line, both in this order.
-pub(crate) struct Record(pub(crate) Vec<(&'static str, Value)>);
+pub(crate) struct Record<'a, V = Value>(pub(crate) Vec<(&'a str, V)>);
 
-impl Serialize for Record {
+impl<V: Serialize> Serialize for Record<'_, V> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.0.iter().map(|(key, value)| (key, value)))
     }
@@ -57,19 +57,20 @@ impl Serialize for Record {
 
 /// A line of names, then a line for each record. Whole numbers have no point.
 pub(crate) fn csv(records: &[Record]) -> String {
-    let cell = |(_, value): &(_, Value)| match value {
-        Value::String(text) => text.clone(),
-        Value::Number(number) if number.is_f64() => number
-            .as_f64()
-            .map_or_else(String::new, |number| number.to_string()),
-        other => other.to_string(),
-    };
-    let names = records.iter().take(1);
-    let names = names.map(|record| csv_line(record.0.iter().map(|(name, _)| *name)));
-    let lines = records
-        .iter()
-        .map(|record| csv_line(record.0.iter().map(cell)));
-    names.chain(lines).collect()
+    let mut text = String::new();
+    for Record(cells) in records {
+        if text.is_empty() {
+            text += &csv_line(cells.iter().map(|(name, _)| *name));
+        }
+        text += &csv_line(cells.iter().map(|(_, value)| match value {
+            Value::String(text) => text.clone(),
+            Value::Number(number) if number.is_f64() => {
+                number.as_f64().unwrap_or_default().to_string()
+            }
+            other => other.to_string(),
+        }));
+    }
+    text
 }
 
 /// Draws a bar for a share, of at most `width` characters. The length is rounded, so a small share may have no bar.

@@ -9,12 +9,12 @@ use std::iter;
 
 use clap::ArgGroup;
 use clap::builder::PossibleValuesParser;
-use serde_json::json;
+use serde_json::{Value, json};
 use taxel_core::index::wide;
 use taxel_core::parameter::number::share;
 use taxel_core::recognition::{
     Classifier, ClassifierEvaluation, ClassifierSettings, Evaluation, GivenDescriptors, Model,
-    Rounding,
+    NamedShape, Rounding,
 };
 use taxel_files::formats::value::{csv_line, grouped, percent, percentage};
 use taxel_files::formats::{ConfusionMap, json};
@@ -25,7 +25,7 @@ use crate::cli::arguments::flags::{name_or_path, whole};
 use crate::cli::commands::model::noise::NoiseFlags;
 use crate::cli::commands::model::{Table, TableFlags, find, fits_in_table, ready, watched};
 use crate::cli::failure::{Failure, Named};
-use crate::cli::output::evaluation::{Count, EvaluationJson, NamedBy, summary};
+use crate::cli::output::evaluation::{self, NamedBy, count, summary};
 use crate::cli::output::table::{Record, row, table};
 
 const EXAMPLES: &str = "\
@@ -126,14 +126,13 @@ impl Confusion {
         } else if self.pairs {
             cx.print(&self.paired(&model))
         } else if let Some(name) = &self.classifier {
-            let limit = Evaluation::of(&model);
-            let reached = |classifier| self.reached(classifier, &model);
             if let Ok(classifier) = name.parse() {
-                let reached = reached(classifier)?;
+                let reached = self.reached(classifier, &model)?;
                 let (own, named) = (&reached.evaluation, NamedBy::Classifier);
                 return self.table.give(&Matrix(own, named, Some(&reached)), cx);
             }
-            let reached = Classifier::ALL.iter().map(|own| reached(*own));
+            let limit = Evaluation::of(&model);
+            let reached = Classifier::ALL.iter().map(|own| self.reached(*own, &model));
             let reached = reached.collect::<Result<_, _>>()?;
             self.table.give(&Classifiers { reached, limit }, cx)
         } else {
@@ -152,39 +151,45 @@ impl Confusion {
         let drawn = self.noise.noise.is_some() || is("knn");
         let with = format!("with --classifier {name}");
         let without = "without --noise or --classifier knn, which draw touches";
-        let known = |own: &Rounding| {
-            let given = self.given.as_ref();
-            given.is_none_or(|given| given.descriptors.contains(&own.descriptor))
-        };
-        let (neighbours, templates) = (self.neighbours.is_some(), self.templates.is_some());
+        let given = self.given.as_ref();
+        let known =
+            |own: &Rounding| given.is_none_or(|all| all.descriptors.contains(&own.descriptor));
         let unknown = !self.round.iter().all(known);
         let unused = [
-            ("neighbours", neighbours && !is("knn"), &*with),
+            (
+                "neighbours",
+                self.neighbours.is_some() && !is("knn"),
+                &*with,
+            ),
             ("sample", self.sample.is_some() && !is("knn"), &with),
-            ("templates", templates && !is("template"), &with),
-            ("given", self.given.is_some() && name == "template", &with),
+            (
+                "templates",
+                self.templates.is_some() && !is("template"),
+                &with,
+            ),
+            ("given", given.is_some() && name == "template", &with),
             ("seed", self.seed.is_some() && !drawn, without),
             ("round", unknown, "for what --given does not name"),
         ];
-        match unused.into_iter().find(|(_, is_unused, _)| *is_unused) {
-            None => Ok(()),
-            Some((flag, _, reason)) => {
-                Err(Failure::usage(format!("--{flag} has no effect {reason}")))
-            }
-        }
+        let unused = unused.into_iter().find(|(_, is_unused, _)| *is_unused);
+        unused.map_or(Ok(()), |(flag, _, reason)| {
+            Err(Failure::usage(format!("--{flag} has no effect {reason}")))
+        })
     }
 
     /// Refuses what the shapes and the sensor of a model do not allow, and a file that cannot be written: before the
     /// work, not after it.
     fn check_model(&self, found: &FoundModel) -> Result<(), Failure> {
-        let names = found.shapes().iter().map(|own| own.name.clone());
-        let shapes: Vec<String> = names.collect();
+        let shapes = names(found.shapes());
         let is_table = self.classifier.as_deref() == Some(ALL);
         let is_matrix = !(is_table || self.greedy || self.noise.noise.is_some());
-        match self.pairs {
-            true => fits_in_table("--pairs", shapes.len())?,
-            false if is_matrix => fits_in_table("confusion matrix", shapes.len())?,
-            false => {}
+        if self.pairs || is_matrix {
+            let table = if self.pairs {
+                "--pairs"
+            } else {
+                "confusion matrix"
+            };
+            fits_in_table(table, shapes.len())?;
         }
         self.noise.check(&found.sensor())?;
         let most = "shapes, and a drawing shows at most 64; .csv takes all";
@@ -234,12 +239,12 @@ impl Confusion {
             let steps = chosen.iter().map(|step| {
                 json!({
                     "descriptor": step.descriptor.key(),
-                    "right": Count(step.evaluation.right),
+                    "right": count(step.evaluation.right),
                     "error": step.evaluation.error(),
                     "values": step.evaluation.keys,
                 })
             });
-            let steps: Vec<_> = steps.collect();
+            let steps = Value::from_iter(steps);
             return json!({"chosen": steps, "limit": limit.error()}).to_string() + "\n";
         }
         let cells = |name: &str, own: &Evaluation| {
@@ -257,18 +262,20 @@ impl Confusion {
     /// The matrix is symmetric: each entry is the error of the best classifier if there were only these two shapes.
     fn paired(&self, model: &Model) -> String {
         let errors = model.pair_errors();
-        let names = model.shapes().iter().map(|shape| shape.name.clone());
-        let labels: Vec<String> = names.collect();
+        let labels = names(model.shapes());
         if self.table.json {
             return json::ascii(&json!({"labels": labels, "errors": errors})) + "\n";
         }
-        let error = |row: usize, column: usize| percentage(errors[row][column], 2);
-        let rows = square(&labels, |row, column| {
-            let error = (row != column).then(|| error(row, column));
-            error.unwrap_or("–".to_owned())
+        let rows = square(&labels, |row, column| match row == column {
+            true => "–".to_owned(),
+            false => percentage(errors[row][column], 2),
         });
         table(&rows, &[0]) + "errors in percent, for each pair alone\n"
     }
+}
+
+fn names(shapes: &[NamedShape]) -> Vec<String> {
+    shapes.iter().map(|shape| shape.name.clone()).collect()
 }
 
 /// The rows of a table with a row and a column for each shape; columns are numbered.
@@ -300,11 +307,11 @@ impl Table for Matrix<'_> {
         rows[0].push("recall".to_owned());
         let mut precision = vec!["precision".to_owned()];
         for shape in 0..own.labels.len() {
-            let recall = own.recall(shape).map(percent);
-            let named_right = own.precision(shape);
-            let named_right = named_right.map(|share| percentage(share, 0) + "% ");
-            rows[shape + 1].push(recall.unwrap_or("–".to_owned()));
-            precision.push(named_right.unwrap_or("– ".to_owned()));
+            let right = own
+                .precision(shape)
+                .map(|share| percentage(share, 0) + "% ");
+            precision.push(right.unwrap_or("– ".to_owned()));
+            rows[shape + 1].push(own.recall(shape).map_or("–".to_owned(), percent));
         }
         rows.push(precision);
         let mut text = summary(own, named) + "\n" + &table(&rows, &[0]);
@@ -333,12 +340,7 @@ impl Table for Matrix<'_> {
     }
 
     fn json(&self) -> String {
-        let (evaluation, classifier) = (self.0, self.2);
-        let answer = EvaluationJson {
-            evaluation,
-            classifier,
-        };
-        json::ascii(&answer) + "\n"
+        json::ascii(&evaluation::record(self.0, self.2)) + "\n"
     }
 
     fn svg(&self) -> Option<String> {
@@ -369,8 +371,9 @@ fn sampled<'a>(reached: impl IntoIterator<Item = &'a ClassifierEvaluation>) -> S
     let drawn = reached.into_iter().filter_map(|own| {
         let (name, sample) = (own.classifier.name(), own.sample?);
         let (poses, seed) = (grouped(sample.per_shape as u64), sample.seed);
-        let text = format!("{name} draws {poses} poses of each shape, with seed {seed}\n");
-        Some(text)
+        Some(format!(
+            "{name} draws {poses} poses of each shape, with seed {seed}\n"
+        ))
     });
     drawn.collect()
 }
@@ -401,16 +404,16 @@ impl Table for Classifiers {
         table(&rows, &[0]) + &features + &sampled(&self.reached)
     }
 
-    fn records(&self) -> Vec<Record> {
-        let records = self.rows().map(|(name, own, top_two)| {
+    fn records(&self) -> Vec<Record<'static>> {
+        let record = |(name, own, top_two): (&str, &Evaluation, f64)| {
             Record(vec![
                 ("classifier", json!(name)),
                 ("error", json!(own.error())),
                 ("right_in_top_two", json!(top_two)),
                 ("information_bits", json!(own.information_bits)),
             ])
-        });
-        records.collect()
+        };
+        self.rows().map(record).collect()
     }
 
     fn json(&self) -> String {

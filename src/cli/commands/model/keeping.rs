@@ -21,7 +21,7 @@ use crate::cli::commands::model::train::grid_text;
 use crate::cli::commands::model::{find, folder, models, ready};
 use crate::cli::failure::Failure;
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::{self, Count, NamedBy};
+use crate::cli::output::evaluation::{self, NamedBy, count};
 
 const SHOW_EXAMPLES: &str = "\
 Examples:
@@ -105,10 +105,6 @@ fn described(shape: &NamedShape) -> String {
     }
 }
 
-fn names(model: &Model) -> impl Iterator<Item = &str> {
-    model.shapes().iter().map(|shape| &*shape.name)
-}
-
 fn never_certain(model: &Model) -> Vec<&str> {
     let never = model.never_certain().into_iter();
     never.map(|shape| &*model.shapes()[shape].name).collect()
@@ -135,10 +131,10 @@ pub(super) fn card(model: &Model, limit: &Evaluation) -> Value {
         "shard": model.shard().to_string(),
         "poses": model.poses(),
         "keys": limit.keys,
-        "touches": Count(limit.touches),
-        "right": Count(limit.right),
+        "touches": count(limit.touches),
+        "right": count(limit.right),
         "error": limit.error(),
-        "certain": limit.certainty.map(|own| Count(own.touches)),
+        "certain": limit.certainty.map(|own| count(own.touches)),
         "information_bits": limit.information_bits,
         "never_certain": never_certain(model),
         "hash": model_hash(model),
@@ -177,7 +173,7 @@ impl List {
                     Ok(model) => json!({
                         "name": name.as_str(),
                         "file": path.to_string_lossy(),
-                        "shapes": names(&model).collect::<Vec<_>>(),
+                        "shapes": model.shapes().iter().map(|own| &own.name).collect::<Vec<_>>(),
                         "keys": model.keys().len(),
                         "shard": model.shard().to_string(),
                     }),

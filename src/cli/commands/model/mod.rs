@@ -112,7 +112,7 @@ trait Table {
     fn text(&self) -> String;
 
     /// The lines of the CSV.
-    fn records(&self) -> Vec<Record> {
+    fn records(&self) -> Vec<Record<'static>> {
         Vec::new()
     }
 
@@ -208,7 +208,7 @@ pub(crate) fn find(which: impl AsRef<OsStr>, shelf: &Shelf) -> Result<FoundModel
 pub(crate) fn ready(found: FoundModel, quiet: bool) -> Result<Model, Failure> {
     found.ready(|training| {
         let advice = "train a model of fewer shapes or coarser steps (taxel model train)";
-        let display = ProgressDisplay::new(training.poses(), quiet);
+        let display = ProgressDisplay::new("poses", training.poses(), quiet);
         let model = MemoryGuard::new(None, advice)
             .limit(&display, |progress| training.with_progress(progress).run());
         Ok(model.map_err(Failure::new)??)
@@ -222,7 +222,7 @@ fn watched<T>(
     work: impl FnOnce(&dyn Progress) -> Option<T>,
 ) -> Result<T, Failure> {
     let signals = Signals::catch()?;
-    let display = ProgressDisplay::counting(noun, all, quiet);
+    let display = ProgressDisplay::new(noun, all, quiet);
     let done = work(&signals.progress(&display));
     done.ok_or_else(|| signals.failure())
 }
@@ -235,7 +235,7 @@ fn trained<T: Send>(
 ) -> Result<T, Failure> {
     let signals = Signals::catch()?;
     let pool = signals::pool(jobs.map_or(0, usize::from))?;
-    let display = ProgressDisplay::new(poses, quiet);
+    let display = ProgressDisplay::new("poses", poses, quiet);
     let done = memory.limit(&signals.progress(&display), |progress| {
         pool.install(|| work(progress))
     });

@@ -25,7 +25,7 @@ use crate::cli::commands::model::confusion::Confusion;
 use crate::cli::commands::model::{Table, find, ready, watched};
 use crate::cli::failure::{Failure, Named};
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::{Count, WEIGHTED};
+use crate::cli::output::evaluation::{WEIGHTED, count};
 use crate::cli::output::plot;
 use crate::cli::output::table::{Record, bar, row, table};
 
@@ -78,12 +78,13 @@ impl NoiseFlags {
 
     pub(super) fn check(&self, of_model: &Sensor) -> Result<(), Failure> {
         let cells = narrow(self.size(of_model).cells());
-        let Some(dead) = self.dead.iter().find(|&&dead| dead > cells) else {
-            return Ok(());
-        };
-        let allowed = format!("(allowed: 0 to {cells}, the taxels of the matrix)");
-        let text = format!("--dead {dead} is above {cells} {allowed}");
-        Err(Failure::new(text))
+        let dead = self.dead.iter().find(|&&dead| dead > cells);
+        dead.map_or(Ok(()), |dead| {
+            let allowed = format!("(allowed: 0 to {cells}, the taxels of the matrix)");
+            Err(Failure::new(format!(
+                "--dead {dead} is above {cells} {allowed}"
+            )))
+        })
     }
 
     pub(super) fn rates(
@@ -125,19 +126,16 @@ impl NoiseFlags {
             Some(_) => "values some shape has",
             None => "imprint some shape leaves",
         };
-        let mut note = format!(
-            "held: touches whose {held} without noise, too\n\
-             claimed: the mean probability of the answers\n"
-        );
-        if model.shapes().iter().any(|shape| shape.weight > 1) {
-            note += WEIGHTED;
-        }
-        let rows = rows?;
+        let is_weighted = model.shapes().iter().any(|shape| shape.weight > 1);
         Ok(NoisyRates {
-            rows,
+            rows: rows?,
             size,
             seed,
-            note,
+            note: format!(
+                "held: touches whose {held} without noise, too\n\
+                 claimed: the mean probability of the answers\n{}",
+                if is_weighted { WEIGHTED } else { "" }
+            ),
         })
     }
 }
@@ -145,12 +143,11 @@ impl NoiseFlags {
 /// Names the shapes whose imprints do not all fit on the matrix.
 fn note_left_out(model: &Model, size: MatrixSize, cx: &Context) {
     let shapes = model.shapes().iter().zip(model.poses_too_large(size));
-    let shapes = shapes
-        .filter(|(_, poses)| *poses > 0)
-        .map(|(shape, poses)| {
-            let part = percent(share(poses.into(), model.poses().into()));
-            format!("{part} of the poses of {}", shape.name)
-        });
+    let shapes = shapes.filter(|(_, poses)| *poses > 0);
+    let shapes = shapes.map(|(shape, poses)| {
+        let part = percent(share(poses.into(), model.poses().into()));
+        format!("{part} of the poses of {}", shape.name)
+    });
     let shapes = shapes.collect::<Vec<_>>().join(", ");
     if !shapes.is_empty() {
         let reason = format!("because they do not fit on {size}");
@@ -208,13 +205,13 @@ impl Table for NoisyRates {
         text
     }
 
-    fn records(&self) -> Vec<Record> {
+    fn records(&self) -> Vec<Record<'static>> {
         let record = |(noise, dead, rate): &(f64, u32, RecognitionRate)| {
             Record(vec![
                 ("noise", json!(noise)),
                 ("dead", json!(dead)),
-                ("touches", json!(Count(rate.weighted_touches))),
-                ("right", json!(Count(rate.weighted_right))),
+                ("touches", count(rate.weighted_touches)),
+                ("right", count(rate.weighted_right)),
                 ("accuracy", json!(rate.accuracy)),
                 ("standard_error", json!(rate.standard_error)),
                 ("claimed", json!(rate.mean_confidence)),
@@ -315,7 +312,7 @@ impl Touches {
     }
 }
 
-fn record((name, own): (&str, &TouchesUntil)) -> Record {
+fn record((name, own): (&str, &TouchesUntil)) -> Record<'static> {
     Record(vec![
         ("name", json!(name)),
         ("mean", json!(own.mean)),
@@ -348,9 +345,7 @@ fn mean(weights: &[u32], results: &[TouchesUntil]) -> Mean {
     let shapes = || weights.iter().copied().map(f64::from).zip(results);
     let means = shapes().map(|(weight, own)| Some(weight * own.mean?));
     let variances = shapes().map(|(weight, own)| Some((weight * own.standard_error?).powi(2)));
-    let (mean, variance): (Option<f64>, Option<f64>) = (means.sum(), variances.sum());
-    (
-        mean.map(|all| all / sum),
-        variance.map(|all| all.sqrt() / sum),
-    )
+    let mean = means.sum::<Option<f64>>().map(|all| all / sum);
+    let error = variances.sum::<Option<f64>>().map(|all| all.sqrt() / sum);
+    (mean, error)
 }

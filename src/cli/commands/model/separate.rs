@@ -31,7 +31,7 @@ use crate::cli::commands::model::{
 use crate::cli::failure::{Failure, Named};
 use crate::cli::input::shapes;
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::Count;
+use crate::cli::output::evaluation::count;
 use crate::cli::output::plot;
 use crate::cli::output::table::{Record, row, table};
 
@@ -132,12 +132,11 @@ impl Separate {
         }
         self.table.check()?;
         if let (Some(first), Some(last)) = (left_out.first(), left_out.last()) {
-            let last = if first == last {
-                String::new()
-            } else {
-                format!(" to {last}")
-            };
-            let text = format!("{} {first}{last}: {}", axis.name(), TrainingError::Large);
+            let mut text = format!("{} {first}", axis.name());
+            if first != last {
+                text += &format!(" to {last}");
+            }
+            text += &format!(": {}", TrainingError::Large);
             if sizes.is_empty() {
                 return Err(Failure::new(text));
             }
@@ -160,11 +159,10 @@ impl Separate {
             };
             thresholds.iter().map(curve).collect()
         })?;
-        let wanted = self.want;
         let separated = Separated {
             axis,
             curves,
-            wanted,
+            wanted: self.want,
         };
         if self.table.csv {
             // The table has no place for the result of --want. It is an answer, not a note, so --quiet does not
@@ -263,21 +261,21 @@ impl Separated {
         self.curves.iter().flat_map(|(_, points, _)| points)
     }
 
-    fn record(&self, point: &SeparationPoint) -> Record {
+    fn record(&self, point: &SeparationPoint) -> Record<'static> {
         Record(vec![
             (self.axis.name(), json!(point.value)),
             ("threshold", json!(point.threshold)),
             ("error", json!(point.error())),
-            ("touches", json!(Count(point.touches))),
-            ("right", json!(Count(point.right))),
-            ("certain", json!(Count(point.certain))),
+            ("touches", count(point.touches)),
+            ("right", count(point.right)),
+            ("certain", count(point.certain)),
             ("keys", json!(point.keys)),
             ("side", json!(point.side)),
         ])
     }
 
     /// JSON has the scale of a pitch, too.
-    fn object(&self, point: &SeparationPoint) -> Record {
+    fn object(&self, point: &SeparationPoint) -> Record<'static> {
         let mut record = self.record(point);
         if self.axis == SizeAxis::Pitch {
             record.0.insert(1, ("scale", json!(point.scale)));
@@ -342,9 +340,8 @@ impl Separated {
 impl Table for Separated {
     fn text(&self) -> String {
         let name = self.axis.name();
-        let titles = ["threshold", "error", "certain", "imprints", "sensor"];
-        let [threshold, error, certain, imprints, sensor] = titles;
-        let mut rows = vec![row([name, threshold, error, certain, imprints, sensor])];
+        let titles = [name, "threshold", "error", "certain", "imprints", "sensor"];
+        let mut rows = vec![row(titles)];
         for point in self.points() {
             let (side, keys) = (point.side, grouped(point.keys as u64));
             let (error, certain) = (percent(point.error()), percent(point.certain_share()));
@@ -356,12 +353,14 @@ impl Table for Separated {
         let (name, curves) = self.plotted();
         for (title, points) in &curves {
             let curve = plot::lines("error", name, points, Charset::current());
-            let title = if curves.len() > 1 { title } else { "" };
-            text += &match (curve.is_empty(), title) {
-                (true, _) => curve,
-                (false, "") => format!("\n{curve}"),
-                (false, title) => format!("\n{title}\n{curve}"),
-            };
+            if curve.is_empty() {
+                continue;
+            }
+            text.push('\n');
+            if curves.len() > 1 {
+                text += &format!("{title}\n");
+            }
+            text += &curve;
         }
         match self.found() {
             none if none.is_empty() => text,
@@ -369,7 +368,7 @@ impl Table for Separated {
         }
     }
 
-    fn records(&self) -> Vec<Record> {
+    fn records(&self) -> Vec<Record<'static>> {
         self.points().map(|point| self.record(point)).collect()
     }
 
@@ -378,7 +377,7 @@ impl Table for Separated {
         #[derive(Serialize)]
         struct Answer {
             axis: &'static str,
-            points: Vec<Record>,
+            points: Vec<Record<'static>>,
             #[serde(skip_serializing_if = "Option::is_none")]
             want: Option<Vec<Value>>,
         }
