@@ -57,19 +57,20 @@ impl Shelf {
         }
     }
 
-    pub(crate) fn library(&self) -> Result<Library, LibraryError> {
-        let folder = self.folder.clone().ok_or(LibraryError::NoPlace)?;
-        Ok(Library::open(folder))
+    pub(crate) fn library(&self) -> Result<Library, Failure> {
+        let folder = self.folder.clone().ok_or(LibraryError::NoPlace);
+        folder
+            .map(Library::open)
+            .map_err(|error| self.refused(error))
     }
 
     pub(crate) fn readable(&self) -> Library {
-        self.library()
-            .unwrap_or_else(|_| Library::open(PathBuf::from(NO_FOLDER)))
+        Library::open(self.folder.clone().unwrap_or_else(|| NO_FOLDER.into()))
     }
 
     /// Returns the library that `--library` names; None if it is not given: scripts then use an empty library of
     /// their own.
-    pub(crate) fn named(&self) -> Result<Option<Library>, LibraryError> {
+    pub(crate) fn named(&self) -> Result<Option<Library>, Failure> {
         self.asked.then(|| self.library()).transpose()
     }
 
@@ -95,11 +96,7 @@ impl Shelf {
             // A text that cannot be a name may be a path.
             None | Some(Err(LibraryError::Name(_))) => {}
             // An error of the library matters only if there is no such file.
-            Some(Err(error))
-                if path
-                    .symlink_metadata()
-                    .is_err_and(|error| is_missing(&error)) =>
-            {
+            Some(Err(error)) if path.symlink_metadata().is_err_and(|own| is_missing(&own)) => {
                 return Err(match &error {
                     LibraryError::Unknown(name) => {
                         let text = format!("no stored shape or file named {name:?}");
@@ -116,10 +113,8 @@ impl Shelf {
     /// Returns the message about an error of the library, with a similar name, or where to look, for an unknown one.
     pub(crate) fn refused(&self, error: LibraryError) -> Failure {
         match &error {
-            LibraryError::System(refused)
-                if refused.error.kind() == ErrorKind::ReadOnlyFilesystem =>
-            {
-                let folder = self.folder.as_ref().unwrap_or(&refused.path);
+            LibraryError::System(own) if own.error.kind() == ErrorKind::ReadOnlyFilesystem => {
+                let folder = self.folder.as_ref().unwrap_or(&own.path);
                 Failure::new(format!("{}: the library is read-only", folder.display()))
             }
             LibraryError::NoPlace => Failure::from(error)
@@ -140,12 +135,10 @@ impl Shelf {
         if name.parse::<FigureKind>().is_ok() {
             return format!("; {name:?} is a figure, which taxel figure and taxel sweep take");
         }
-        match (
-            self.readable().suggestion(error),
-            self.library_command("list"),
-        ) {
-            (none, Some(list)) if none.is_empty() => format!("; to list all shapes: {list}"),
-            (similar, _) => similar,
+        let similar = self.readable().suggestion(error);
+        match self.library_command("list") {
+            Some(list) if similar.is_empty() => format!("; to list all shapes: {list}"),
+            _ => similar,
         }
     }
 
@@ -176,7 +169,7 @@ impl Shelf {
     /// Stores a shape and returns its name in the library, which may differ in case. `existing` tells whether an own
     /// shape of that name is replaced.
     pub(crate) fn save(&self, shape: &StoredShape, existing: Existing) -> Result<String, Failure> {
-        let library = self.library().map_err(|error| self.refused(error))?;
+        let library = self.library()?;
         let expected = match existing {
             Existing::Replaced => Expected::Anything,
             Existing::Kept => Expected::Nothing,
@@ -262,6 +255,10 @@ mod tests {
         let washer = shelf.locate(OsStr::new("washer"));
         assert!(matches!(washer, Ok(Located::Shape(_))));
         assert!(!shelf.readable().list().expect("shipped shapes").is_empty());
-        assert!(matches!(shelf.library(), Err(LibraryError::NoPlace)));
+        assert!(
+            shelf
+                .library()
+                .is_err_and(|failure| failure.text.contains("--library DIR"))
+        );
     }
 }

@@ -37,7 +37,10 @@ pub(crate) fn record(
             "keys_of_one_shape",
             json!(own.certainty.map(|own| own.keys)),
         ),
-        ("confusion", own.confusion.rows().map(row).collect::<Value>()),
+        (
+            "confusion",
+            own.confusion.rows().map(row).collect::<Value>(),
+        ),
     ];
     if let Some(reached) = classifier {
         record.push(("classifier", json!(reached.classifier.name())));

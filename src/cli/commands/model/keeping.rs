@@ -1,7 +1,7 @@
 //! `taxel model show`, `list` and `delete`: the models that are kept.
 
 use std::collections::BTreeMap;
-use std::ffi::OsString;
+use std::ffi::OsStr;
 
 use serde_json::{Value, json};
 use taxel_core::parameter::Parameter;
@@ -16,46 +16,31 @@ use taxel_files::formats::{Name, json};
 use taxel_files::storage::{ModelChoice, load_model, model_hash};
 
 use crate::cli::Context;
-use crate::cli::arguments::flags::name_or_path;
 use crate::cli::commands::model::train::grid_text;
 use crate::cli::commands::model::{find, folder, models, ready};
 use crate::cli::failure::Failure;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, NamedBy, count};
 
-const SHOW_EXAMPLES: &str = "\
+pub(super) const SHOW_EXAMPLES: &str = "\
 Examples:
   taxel model show parts
   taxel model show ./parts.npz --json";
 
-/// Show what a model was trained on, and its error
-#[derive(Debug, clap::Args)]
-#[command(after_help = SHOW_EXAMPLES)]
-pub(crate) struct Show {
-    /// Name of a model, or its file
-    #[arg(value_name = "MODEL", value_parser = name_or_path())]
-    model: OsString,
-    /// Print JSON, one line per answer
-    #[arg(long)]
-    json: bool,
-}
-
-impl Show {
-    pub(super) fn run(self, cx: &Context) -> Result<(), Failure> {
-        let models = models(&cx.shelf);
-        let choice = models.locate(ModelChoice::from_text(&self.model))?;
-        let model = match models.file(&choice) {
-            // A shard, too, which answers no touches.
-            Some(path) => load_model(&path)?,
-            None => ready(find(&self.model, &cx.shelf)?, false)?,
-        };
-        let limit = Evaluation::of(&model);
-        cx.print(&if self.json {
-            json::ascii(&card(&model, &limit)) + "\n"
-        } else {
-            text(&model, &limit)
-        })
-    }
+pub(super) fn show(model: &OsStr, json: bool, cx: &Context) -> Result<(), Failure> {
+    let models = models(&cx.shelf);
+    let choice = models.locate(ModelChoice::from_text(model))?;
+    let model = match models.file(&choice) {
+        // A shard, too, which answers no touches.
+        Some(path) => load_model(&path)?,
+        None => ready(find(model, &cx.shelf)?, false)?,
+    };
+    let limit = Evaluation::of(&model);
+    cx.print(&if json {
+        json::ascii(&card(&model, &limit)) + "\n"
+    } else {
+        text(&model, &limit)
+    })
 }
 
 fn text(model: &Model, limit: &Evaluation) -> String {
@@ -141,52 +126,41 @@ pub(super) fn card(model: &Model, limit: &Evaluation) -> Value {
     })
 }
 
-const LIST_EXAMPLES: &str = "\
+pub(super) const LIST_EXAMPLES: &str = "\
 Your models are files in the folder 'models' of the library. The built-in ones
 are trained when first used; --json leaves them out.
 
 Examples:
   taxel model list --json";
 
-/// List the models
-#[derive(Debug, clap::Args)]
-#[command(after_help = LIST_EXAMPLES)]
-pub(crate) struct List {
-    /// Print JSON, one line per answer
-    #[arg(long)]
-    json: bool,
-}
-
-impl List {
-    /// If a model cannot be read, the reason takes the place of the numbers. The JSON lists only models in files.
-    pub(super) fn run(self, cx: &Context) -> Result<(), Failure> {
-        if !self.json {
-            for own in ModelChoice::BUILT_IN {
-                cx.print(&format!("{}: built in\n", own.name()))?;
-            }
+/// If a model cannot be read, the reason takes the place of the numbers. The JSON lists only models in files.
+pub(super) fn list(json: bool, cx: &Context) -> Result<(), Failure> {
+    if !json {
+        for own in ModelChoice::BUILT_IN {
+            cx.print(&format!("{}: built in\n", own.name()))?;
         }
-        let models = folder(&cx.shelf).map_or(Ok(Vec::new()), |folder| folder.list())?;
-        for (name, path) in models {
-            let model = load_model(&path);
-            let line = if self.json {
-                json::ascii(&match model {
-                    Ok(model) => json!({
-                        "name": name.as_str(),
-                        "file": path.to_string_lossy(),
-                        "shapes": model.shapes().iter().map(|own| &own.name).collect::<Vec<_>>(),
-                        "keys": model.keys().len(),
-                        "shard": model.shard().to_string(),
-                    }),
-                    Err(error) => json!({"name": name.as_str(), "error": error.to_string()}),
-                })
-            } else {
-                let said = model.map_or_else(|error| error.to_string(), |model| in_short(&model));
-                format!("{name}: {said}")
-            };
-            cx.print(&format!("{}\n", Charset::current().line(&line)))?;
-        }
-        Ok(())
     }
+    let models = folder(&cx.shelf).map_or(Ok(Vec::new()), |folder| folder.list())?;
+    for (name, path) in models {
+        let model = load_model(&path);
+        let line = if json {
+            json::ascii(&match model {
+                Ok(model) => json!({
+                    "name": name.as_str(),
+                    "file": path.to_string_lossy(),
+                    "shapes": model.shapes().iter().map(|own| &own.name).collect::<Vec<_>>(),
+                    "keys": model.keys().len(),
+                    "shard": model.shard().to_string(),
+                }),
+                Err(error) => json!({"name": name.as_str(), "error": error.to_string()}),
+            })
+        } else {
+            let said = model.map_or_else(|error| error.to_string(), |model| in_short(&model));
+            format!("{name}: {said}")
+        };
+        cx.print(&format!("{}\n", Charset::current().line(&line)))?;
+    }
+    Ok(())
 }
 
 fn in_short(model: &Model) -> String {
@@ -200,36 +174,24 @@ fn in_short(model: &Model) -> String {
     format!("{shapes}, {keys}, {rest}")
 }
 
-const DELETE_EXAMPLES: &str = "\
+pub(super) const DELETE_EXAMPLES: &str = "\
 The file is removed for good, but the model can be trained again.
 
 Examples:
   taxel model delete parts";
 
-/// Delete a model
-#[derive(Debug, clap::Args)]
-#[command(after_help = DELETE_EXAMPLES)]
-pub(crate) struct Delete {
-    /// Name of the model
-    #[arg(value_parser = Name::new)]
-    name: Name,
-}
-
-impl Delete {
-    /// Unlike a shape of the library, a model does not go to the trash: it can be trained again.
-    pub(super) fn run(self, cx: &Context) -> Result<(), Failure> {
-        let (models, name) = (folder(&cx.shelf)?, self.name);
-        if let Some(deleted) = models.delete(&name)? {
-            return cx.print(&format!("deleted {deleted}\n"));
-        }
-        let near = did_you_mean(name.as_str(), models.names().iter().map(Name::as_str));
-        let text = match ModelChoice::from_name(name.clone()) {
-            ModelChoice::Stored(_) => {
-                let name = name.as_str();
-                format!("no model named {name:?}; 'taxel model list' shows all{near}")
-            }
-            _ => format!("{name} is built in and cannot be deleted"),
-        };
-        Err(Failure::new(text))
+/// Unlike a shape of the library, a model does not go to the trash: it can be trained again.
+pub(super) fn delete(name: &Name, cx: &Context) -> Result<(), Failure> {
+    let models = folder(&cx.shelf)?;
+    if let Some(deleted) = models.delete(name)? {
+        return cx.print(&format!("deleted {deleted}\n"));
     }
+    let near = did_you_mean(name.as_str(), models.names().iter().map(Name::as_str));
+    Err(Failure::new(match ModelChoice::from_name(name.clone()) {
+        ModelChoice::Stored(_) => {
+            let name = name.as_str();
+            format!("no model named {name:?}; 'taxel model list' shows all{near}")
+        }
+        _ => format!("{name} is built in and cannot be deleted"),
+    }))
 }

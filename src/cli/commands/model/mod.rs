@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 
 use taxel_core::progress::Progress;
 use taxel_core::recognition::{CellPositions, Model, TrainingError};
+use taxel_files::formats::Name;
 use taxel_files::formats::file::has_ending;
 use taxel_files::memory::MemoryGuard;
 use taxel_files::storage::{
@@ -52,9 +53,30 @@ Examples:
 #[command(after_help = EXAMPLES)]
 pub(crate) enum ModelCommand {
     Train(train::Train),
-    Show(keeping::Show),
-    List(keeping::List),
-    Delete(keeping::Delete),
+    /// Show what a model was trained on, and its error
+    #[command(after_help = keeping::SHOW_EXAMPLES)]
+    Show {
+        /// Name of a model, or its file
+        #[arg(value_parser = name_or_path())]
+        model: OsString,
+        /// Print JSON, one line per answer
+        #[arg(long)]
+        json: bool,
+    },
+    /// List the models
+    #[command(after_help = keeping::LIST_EXAMPLES)]
+    List {
+        /// Print JSON, one line per answer
+        #[arg(long)]
+        json: bool,
+    },
+    /// Delete a model
+    #[command(after_help = keeping::DELETE_EXAMPLES)]
+    Delete {
+        /// Name of the model
+        #[arg(value_parser = Name::new)]
+        name: Name,
+    },
     Confusion(confusion::Confusion),
     Touches(noise::Touches),
     Separate(separate::Separate),
@@ -64,9 +86,9 @@ impl ModelCommand {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
         match self {
             Self::Train(command) => command.run(cx),
-            Self::Show(command) => command.run(cx),
-            Self::List(command) => command.run(cx),
-            Self::Delete(command) => command.run(cx),
+            Self::Show { model, json } => keeping::show(&model, json, cx),
+            Self::List { json } => keeping::list(json, cx),
+            Self::Delete { name } => keeping::delete(&name, cx),
             Self::Confusion(command) => command.run(cx),
             Self::Touches(command) => command.run(cx),
             Self::Separate(command) => command.run(cx),
