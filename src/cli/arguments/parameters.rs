@@ -18,63 +18,26 @@ use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::cli::failure::Failure;
 use crate::cli::settings::{Pitch, Settings};
 
-/// A group of flags: the flags of some parameters, under one heading.
-struct Group {
-    heading: &'static str,
-    parameters: fn() -> Vec<Parameter>,
-    /// What the help says about the value of a flag that is left out.
-    default: fn(Parameter) -> String,
+/// The groups, by number: heading, parameters, and what the help says about the value of a flag that is left out. A
+/// command flattens `Flags<NUMBER>` into its arguments.
+fn group(number: usize) -> (&'static str, Vec<Parameter>, fn(Parameter) -> String) {
+    let is_axis = |own: &Parameter| Axis::ALL.iter().any(|axis| axis.parameter() == *own);
+    let sizes = || figure_parameters().filter(|own| !is_axis(own));
+    let fitting = |own| match own {
+        Parameter::Threshold => usual(own),
+        _ => "; default large enough for all shapes, at least 16".to_owned(),
+    };
+    match number {
+        0 => ("Figure", figure_parameters().collect(), usual),
+        1 => ("Figure", sizes().collect(), usual),
+        2 => ("Picture", PICTURE_PARAMETERS.to_vec(), of_shape),
+        3 => ("Sensor", SENSOR_PARAMETERS.to_vec(), usual),
+        4 => ("Sensor", MATRIX.to_vec(), usual),
+        5 => ("Sensor", SENSOR_PARAMETERS.to_vec(), of_shape),
+        6 => ("Sensor", MATRIX.to_vec(), fitting),
+        _ => ("Sensor", vec![Parameter::Pitch], usual),
+    }
 }
-
-/// The groups, by number: a command flattens `Flags<NUMBER>` into its arguments.
-const GROUPS: [Group; 8] = [
-    Group {
-        heading: "Figure",
-        parameters: || figure_parameters().collect(),
-        default: usual,
-    },
-    Group {
-        heading: "Figure",
-        parameters: || {
-            let is_axis = |own: Parameter| Axis::ALL.iter().any(|axis| axis.parameter() == own);
-            figure_parameters().filter(|own| !is_axis(*own)).collect()
-        },
-        default: usual,
-    },
-    Group {
-        heading: "Picture",
-        parameters: || PICTURE_PARAMETERS.to_vec(),
-        default: of_shape,
-    },
-    Group {
-        heading: "Sensor",
-        parameters: || SENSOR_PARAMETERS.to_vec(),
-        default: usual,
-    },
-    Group {
-        heading: "Sensor",
-        parameters: || MATRIX.to_vec(),
-        default: usual,
-    },
-    Group {
-        heading: "Sensor",
-        parameters: || SENSOR_PARAMETERS.to_vec(),
-        default: of_shape,
-    },
-    Group {
-        heading: "Sensor",
-        parameters: || MATRIX.to_vec(),
-        default: |own| match own {
-            Parameter::Threshold => usual(own),
-            _ => "; default large enough for all shapes, at least 16".to_owned(),
-        },
-    },
-    Group {
-        heading: "Sensor",
-        parameters: || vec![Parameter::Pitch],
-        default: usual,
-    },
-];
 
 const MATRIX: [Parameter; 3] = [Parameter::Columns, Parameter::Rows, Parameter::Threshold];
 
@@ -113,9 +76,9 @@ impl<const GROUP: usize> Deref for Flags<GROUP> {
 
 impl<const GROUP: usize> Args for Flags<GROUP> {
     fn augment_args(command: Command) -> Command {
-        let group = &GROUPS[GROUP];
-        let flag = |own| arg(own, &(group.default)(own)).help_heading(group.heading);
-        command.args((group.parameters)().into_iter().map(flag))
+        let (heading, parameters, default) = group(GROUP);
+        let flag = |own| arg(own, &default(own)).help_heading(heading);
+        command.args(parameters.into_iter().map(flag))
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -125,8 +88,7 @@ impl<const GROUP: usize> Args for Flags<GROUP> {
 
 impl<const GROUP: usize> FromArgMatches for Flags<GROUP> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
-        let own = (GROUPS[GROUP].parameters)().into_iter();
-        let given = own.filter_map(|parameter| {
+        let given = group(GROUP).1.into_iter().filter_map(|parameter| {
             let number = matches.try_get_one::<Number>(parameter.row().key);
             Some((parameter, number.ok().flatten()?.clone()))
         });
@@ -156,20 +118,21 @@ fn of_shape(parameter: Parameter) -> String {
 }
 
 pub(crate) fn figure_parameters() -> impl Iterator<Item = Parameter> {
-    PARAMETERS
-        .iter()
-        .map(|row| row.parameter)
-        .filter(|parameter| {
-            let mut kinds = FigureKind::ALL.iter();
-            kinds.any(|kind| kind.parameters().contains(parameter))
-        })
+    let all = PARAMETERS.iter().map(|row| row.parameter);
+    all.filter(|parameter| {
+        let mut kinds = FigureKind::ALL.iter();
+        kinds.any(|kind| kind.parameters().contains(parameter))
+    })
 }
 
 pub(crate) fn arg(parameter: Parameter, default: &str) -> Arg {
     let row = parameter.row();
-    let unit = match row.unit {
-        Unit::Ratio => String::new(),
-        unit => format!("{}, ", unit.name()),
+    let (unit, value_name) = match row.unit {
+        Unit::Ratio => (String::new(), "NUMBER".to_owned()),
+        unit => (
+            format!("{}, ", unit.name()),
+            unit.name().to_ascii_uppercase(),
+        ),
     };
     let also = match parameter {
         Parameter::Pitch => "; adds mm to tables and drawings, not to JSON",
@@ -179,10 +142,7 @@ pub(crate) fn arg(parameter: Parameter, default: &str) -> Arg {
     let meaning = capitalised(row.meaning);
     Arg::new(row.key)
         .long(parameter.flag())
-        .value_name(match row.unit {
-            Unit::Ratio => "NUMBER".to_owned(),
-            unit => unit.name().to_ascii_uppercase(),
-        })
+        .value_name(value_name)
         .help(format!("{meaning}{also} ({unit}{range}{default})"))
         // A minus sign starts a number here, not a flag.
         .allow_hyphen_values(true)

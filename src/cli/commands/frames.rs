@@ -12,6 +12,7 @@ use std::path::PathBuf;
 
 use clap::{Arg, ArgGroup};
 use serde::Serialize;
+use serde_json::json;
 use taxel_core::frame::{
     FlipCounter, FlipReport, Frame, FrameError, FrameSize, Label, Peak, Processed, Rule,
     RuleOrigin, SetRule, View,
@@ -20,6 +21,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::matrix::Matrix;
 use taxel_core::parameter::Parameter;
 use taxel_core::parameter::number::short;
+use taxel_core::progress::stop_if;
 use taxel_core::sensor::Sensor;
 use taxel_files::ReadError;
 use taxel_files::formats::recording::{
@@ -40,6 +42,7 @@ use crate::cli::input::recording::{RecordingFile, damaged, noted, refused};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::plot::heat_map;
 use crate::cli::output::report;
+use crate::cli::output::table::Record;
 use crate::frames::{Pipeline, Taring};
 
 #[expect(clippy::struct_excessive_bools, reason = "one for each flag")]
@@ -208,40 +211,24 @@ struct Scan {
 }
 
 /// A channel, as it is listed.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default)]
 struct Channel {
-    name: Option<String>,
-    frames: u64,
-    /// The size of the visible part of its frames.
-    rows: Option<u16>,
-    columns: Option<u16>,
-    cells: usize,
-    unit: Option<String>,
-    start: Option<String>,
-    seconds_per_frame: Option<f64>,
-    pitch_mm: Option<[f64; 2]>,
-    threshold: Option<f64>,
-    peak: Option<u64>,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    marks: Vec<u64>,
-    #[serde(skip)]
     info: ChannelInfo,
-    #[serde(skip)]
+    /// The size of the visible part of its frames.
+    seen: Option<FrameSize>,
+    frames: u64,
+    cells: usize,
     best: Peak,
+    marks: Vec<u64>,
     /// The number of values of a frame.
-    #[serde(skip)]
     values: u64,
     /// The least and the greatest label.
-    #[serde(skip)]
     labels: Option<(Label, Label)>,
     /// The frames with the label that is asked for.
-    #[serde(skip)]
     labelled: Vec<u64>,
     /// The first and the last time in seconds.
-    #[serde(skip)]
     times: Option<(f64, f64)>,
     /// The first frame that is earlier than the one before it: a clock was set back, or the column is not a time.
-    #[serde(skip)]
     backwards: Option<u64>,
 }
 
@@ -249,7 +236,7 @@ struct Channel {
 struct ListJson<'a> {
     /// Null if a damage comes before the format is certain.
     format: Option<&'static str>,
-    channels: &'a [Channel],
+    channels: Vec<Record<'static>>,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     notes: &'a [String],
 }
@@ -295,19 +282,32 @@ impl Scan {
 
 impl Channel {
     fn new(info: &ChannelInfo, view: &View) -> Self {
-        let seen = info.size.map(|size| view.size(size).unwrap_or(size));
         Self {
-            name: info.name.clone(),
-            rows: seen.map(FrameSize::rows),
-            columns: seen.map(FrameSize::columns),
-            unit: info.unit.clone(),
-            start: info.start.clone(),
-            seconds_per_frame: info.seconds_per_frame,
-            pitch_mm: info.pitch_mm,
-            threshold: info.threshold,
+            seen: info.size.map(|size| view.size(size).unwrap_or(size)),
             info: info.clone(),
             ..Self::default()
         }
+    }
+
+    fn record(&self) -> Record<'static> {
+        let info = &self.info;
+        let mut record = vec![
+            ("name", json!(info.name)),
+            ("frames", json!(self.frames)),
+            ("rows", json!(self.seen.map(FrameSize::rows))),
+            ("columns", json!(self.seen.map(FrameSize::columns))),
+            ("cells", json!(self.cells)),
+            ("unit", json!(info.unit)),
+            ("start", json!(info.start)),
+            ("seconds_per_frame", json!(info.seconds_per_frame)),
+            ("pitch_mm", json!(info.pitch_mm)),
+            ("threshold", json!(info.threshold)),
+            ("peak", json!(self.best.number())),
+        ];
+        if !self.marks.is_empty() {
+            record.push(("marks", json!(self.marks)));
+        }
+        Record(record)
     }
 
     fn add(&mut self, frame: &Frame, values: &[f64], asked: Option<&Label>) {
@@ -316,7 +316,6 @@ impl Channel {
         self.cells = self.cells.max(cells);
         let sum = (cells > 0).then(|| present.sum());
         self.best.add(frame.number, sum);
-        self.peak = self.best.number();
         if let Some(time) = frame.time {
             let (first, last) = self.times.unwrap_or((time, time));
             if time < last {
@@ -372,22 +371,23 @@ impl Channel {
                 info.threshold.map(|value| short(value) + &unit(info)),
             ),
             ("marks", (!marks.is_empty()).then(|| marks.join(", "))),
-            ("peak", self.peak.map(|number| format!("frame {number}"))),
+            (
+                "peak",
+                self.best.number().map(|number| format!("frame {number}")),
+            ),
         ];
-        let rows = rows.into_iter();
-        rows.filter_map(|(name, value)| Some(format!("{name:<10}{}", value?)))
-            .collect()
+        let lines = rows.map(|(name, value)| Some(format!("{name:<10}{}", value?)));
+        lines.into_iter().flatten().collect()
     }
 
     fn size(&self) -> String {
-        let Some((rows, columns)) = self.rows.zip(self.columns) else {
+        let Some(seen) = self.seen else {
             let values = counted(self.values, "value");
             return format!("{values} a frame; give --rows and --columns");
         };
-        let whole = self.info.size.map(|size| (size.rows(), size.columns()));
-        let whole = whole.filter(|&whole| whole != (rows, columns));
-        let whole = whole.map(|(rows, columns)| format!(" of {rows} × {columns}"));
-        let (rows, columns) = (counted(rows, "row"), counted(columns, "column"));
+        let whole = self.info.size.filter(|whole| *whole != seen);
+        let whole = whole.map(|own| format!(" of {} × {}", own.rows(), own.columns()));
+        let [rows, columns] = in_words(seen);
         let cells = counted(self.cells as u64, "cell");
         format!("{rows} × {columns}{}, {cells}", whole.unwrap_or_default())
     }
@@ -399,17 +399,16 @@ impl Channel {
         }
         match choice {
             Choice::Label(label) => {
-                let found = match &self.labels {
-                    None => ": the frames have no labels, only numbers; choose one with --frame"
-                        .to_owned(),
-                    Some((least, greatest)) if least == greatest => {
-                        format!("; the only label is {least}")
+                let text = format!("no frame is labelled {label}");
+                match &self.labels {
+                    None => {
+                        text + ": the frames have no labels, only numbers; choose one with --frame"
                     }
-                    Some((least, greatest)) => {
-                        format!("; the labels go from {least} to {greatest}")
+                    Some((least, most)) if least == most => {
+                        format!("{text}; the only label is {least}")
                     }
-                };
-                format!("no frame is labelled {label}{found}")
+                    Some((least, most)) => format!("{text}; the labels go from {least} to {most}"),
+                }
             }
             Choice::Number(number) => match self.frames - 1 {
                 0 => format!("no frame {number}; the recording has only frame 0"),
@@ -419,6 +418,13 @@ impl Channel {
             Choice::All => "no frames".to_owned(),
         }
     }
+}
+
+fn in_words(size: FrameSize) -> [String; 2] {
+    [
+        counted(size.rows(), "row"),
+        counted(size.columns(), "column"),
+    ]
 }
 
 const MOST_WARNINGS: usize = 20;
@@ -532,8 +538,7 @@ impl Answering<'_> {
         if let (Some(given), Some(stated)) = (self.asked.reading.size(), stated)
             && given != stated
         {
-            let rows = counted(stated.rows(), "row");
-            let columns = counted(stated.columns(), "column");
+            let [rows, columns] = in_words(stated);
             self.warn(format!(
                 "it states {rows} and {columns}; --rows and --columns have no effect"
             ));
@@ -552,7 +557,7 @@ impl Answering<'_> {
         if self.asked.json {
             let list = ListJson {
                 format,
-                channels,
+                channels: channels.iter().map(Channel::record).collect(),
                 notes: &scan.plain,
             };
             return self.write(json::ascii(&list) + "\n");
@@ -616,7 +621,7 @@ impl Answering<'_> {
             Choice::Label(_) => channel.labelled.iter().copied().map(one).collect(),
             // Without tare and gain the listing has it already.
             Choice::Peak if processing.tare.is_none() && processing.gain.is_none() => {
-                channel.peak.map(one).into_iter().collect()
+                channel.best.number().map(one).into_iter().collect()
             }
             Choice::Peak => {
                 let mut peak = Peak::default();
@@ -692,11 +697,7 @@ impl Answering<'_> {
                 self.give(channel, frame, &processed, answered)?;
                 answered = true;
             }
-            Ok(if frame.number + 1 >= end {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            })
+            Ok(stop_if(frame.number + 1 >= end))
         })?;
         Ok(answered)
     }
@@ -753,12 +754,8 @@ impl Answering<'_> {
         }
         let mut text = if again { "\n" } else { "" }.to_owned();
         if let Some(values) = heat {
-            text += &heat_map(
-                values,
-                &Charset::current().line(&unit(info)),
-                Charset::current(),
-            );
-            text.push('\n');
+            let charset = Charset::current();
+            text += &(heat_map(values, &charset.line(&unit(info)), charset) + "\n");
         }
         text += &report::table(&imprint, &lines, pitch);
         let named = self.namer.as_ref().map(|namer| namer.text(&imprint));
@@ -790,10 +787,8 @@ impl Answering<'_> {
             title += &format!(", {channel}");
         }
         let unit = unit(info);
-        let (sum, max) = (
-            short(processed.sum),
-            processed.max.map_or("–".to_owned(), short),
-        );
+        let max = processed.max.map_or("–".to_owned(), short);
+        let sum = short(processed.sum);
         let mut values = format!("raw sum {sum}{unit}, raw max {max}{unit}");
         if processed.tare > 0 {
             values += &format!(", tare of {}", counted(processed.tare, "frame"));
@@ -854,7 +849,7 @@ impl Answering<'_> {
             if let Some(said) = said {
                 self.cx.note(&said);
             }
-            self.write(json::text(&NoiseJson::of(&found)) + "\n")?;
+            self.write(json::text(&noise_json(&found)) + "\n")?;
         } else {
             let said = said.map_or(String::new(), |said| said + "\n");
             let text = Charset::current().lines(&(said + &noise_text(&found)));
@@ -880,11 +875,10 @@ fn rule_text(set: SetRule, unit: &str) -> String {
         Rule::Percent(percent) => {
             format!("active: {} % of the largest value or more", short(percent))
         }
-        Rule::Hysteresis { low, high } => format!(
-            "active: {}{unit} or more, joined to {}{unit} or more",
-            short(low),
-            short(high)
-        ),
+        Rule::Hysteresis { low, high } => {
+            let [low, high] = [low, high].map(short);
+            format!("active: {low}{unit} or more, joined to {high}{unit} or more")
+        }
         Rule::Noise(deviations) => {
             let deviations = short(deviations);
             format!("active: {deviations} standard deviations above the tare, or more")
@@ -927,33 +921,18 @@ fn cells(values: &Matrix<f64>) -> Imprint {
     cells
 }
 
-#[derive(Serialize)]
-struct NoiseJson {
-    frames: u64,
-    cells: u32,
-    noise: Option<f64>,
-    standard_error: Option<f64>,
-    flips: u64,
-    repeated: u64,
-    stuck_on: Vec<[u8; 2]>,
-    stuck_off: Vec<[u8; 2]>,
-    mask: Vec<String>,
-}
-
-impl NoiseJson {
-    fn of(found: &FlipReport) -> Self {
-        Self {
-            frames: found.frames,
-            cells: found.cells,
-            noise: found.noise,
-            standard_error: found.standard_error,
-            flips: found.flips,
-            repeated: found.repeated,
-            stuck_on: taxels(&found.stuck_on),
-            stuck_off: taxels(&found.stuck_off),
-            mask: found.mask().lines().collect(),
-        }
-    }
+fn noise_json(found: &FlipReport) -> Record<'static> {
+    Record(vec![
+        ("frames", json!(found.frames)),
+        ("cells", json!(found.cells)),
+        ("noise", json!(found.noise)),
+        ("standard_error", json!(found.standard_error)),
+        ("flips", json!(found.flips)),
+        ("repeated", json!(found.repeated)),
+        ("stuck_on", json!(taxels(&found.stuck_on))),
+        ("stuck_off", json!(taxels(&found.stuck_off))),
+        ("mask", json!(found.mask().lines().collect::<Vec<_>>())),
+    ])
 }
 
 fn taxels(imprint: &Imprint) -> Vec<[u8; 2]> {
@@ -966,11 +945,8 @@ fn taxels(imprint: &Imprint) -> Vec<[u8; 2]> {
 fn noise_text(found: &FlipReport) -> String {
     let frames = counted(found.frames, "frame");
     let cells = counted(found.cells, "taxel");
-    let of = format!(
-        "a taxel changed for a single frame in {} of {} cases",
-        grouped(found.flips),
-        grouped(found.repeated)
-    );
+    let [flips, cases] = [found.flips, found.repeated].map(grouped);
+    let of = format!("a taxel changed for a single frame in {flips} of {cases} cases");
     let noise = match (found.noise, found.standard_error) {
         (Some(noise), Some(error)) => format!("noise {noise:.5} ± {error:.5}: {of}"),
         _ if found.repeated == 0 => "too few frames to tell how often taxels flip".to_owned(),
@@ -978,13 +954,10 @@ fn noise_text(found: &FlipReport) -> String {
     };
     let [on, off] = [&found.stuck_on, &found.stuck_off].map(|stuck| {
         let taxels = taxels(stuck).into_iter();
-        let taxels: Vec<String> = taxels
-            .map(|[column, row]| format!("{column},{row}"))
-            .collect();
-        if taxels.is_empty() {
-            "none".to_owned()
-        } else {
-            taxels.join("  ")
+        let taxels = taxels.map(|[column, row]| format!("{column},{row}"));
+        match taxels.collect::<Vec<_>>().join("  ") {
+            none if none.is_empty() => "none".to_owned(),
+            all => all,
         }
     });
     format!("{frames} of {cells}\n{noise}\nstuck on: {on}\nstuck off or dead: {off}\n")

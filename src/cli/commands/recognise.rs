@@ -15,7 +15,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::index::wide;
 use taxel_core::progress::ToTheEnd;
 use taxel_core::quote::did_you_mean;
-use taxel_core::recognition::{AnswerState, Evidence, Model, Noise, NoiseError};
+use taxel_core::recognition::{Answer, AnswerState, Evidence, Model, Noise, NoiseError};
 use taxel_files::ReadError;
 use taxel_files::formats::file::without_mark;
 use taxel_files::formats::job::{FrameRows, RuleRecord};
@@ -151,15 +151,15 @@ impl FoundNamer {
 /// Names the shapes that left imprints.
 #[derive(Debug)]
 pub(crate) struct Namer {
-    model: Model,
-    noise: Option<Noise>,
+    pub(crate) model: Model,
+    pub(crate) noise: Option<Noise>,
     /// The probability below which an answer is rejected.
     reject: Option<f64>,
     /// The number of shapes of the ranking that are shown; None for eight in words and all in JSON.
-    top: Option<usize>,
-    asks_pose: bool,
+    pub(crate) top: Option<usize>,
+    pub(crate) asks_pose: bool,
     /// The pitch for poses, if it is known.
-    pitch_mm: Option<f64>,
+    pub(crate) pitch_mm: Option<f64>,
 }
 
 impl Namer {
@@ -167,12 +167,9 @@ impl Namer {
         let mut evidence = Evidence::of(touches).under(self.noise.as_ref());
         evidence.reject_below = self.reject;
         Recognition {
-            model: &self.model,
+            namer: self,
             answer: self.model.recognise(evidence),
-            noise: self.noise,
             nearest: self.model.nearest_of(evidence),
-            top: self.top,
-            asks_pose: self.asks_pose,
             pose: None,
             copied: Vec::new(),
         }
@@ -189,18 +186,14 @@ impl Namer {
         }
         let mut answer = self.answer(touches);
         if let Some(touch) = touches.last().filter(|_| self.asks_pose) {
-            answer.pose = self.pose(touch, &answer)?;
+            answer.pose = self.pose(touch, &answer.answer)?;
         }
         Ok(answer)
     }
 
     /// Where the shape of an answer lies. None without an answer, and if the shape does not leave this imprint.
-    fn pose(
-        &self,
-        touch: &Imprint,
-        named: &Recognition<'_>,
-    ) -> Result<Option<PoseReport>, Failure> {
-        let Some(shape) = named.answer.shape else {
+    fn pose(&self, touch: &Imprint, answer: &Answer) -> Result<Option<PoseReport>, Failure> {
+        let Some(shape) = answer.shape else {
             return Ok(None);
         };
         let memory = MemoryGuard::new(None, "train the model in coarser steps to see poses");
@@ -209,7 +202,7 @@ impl Namer {
         });
         let found = poses.map_err(Failure::new)?.zip(touch.bounds());
         Ok(found.map(|((estimate, mut placed), bounds)| PoseReport {
-            name: named.name(shape).to_owned(),
+            name: self.model.shapes()[shape].name.clone(),
             estimate,
             corner: [bounds.left.into(), bounds.top.into()],
             placed: placed.pop(),
@@ -309,10 +302,9 @@ impl Recognise {
             && shape.source.is_some()
             && shape.sensor.threshold() != trained
         {
-            let touched = format!("touched at threshold {}", shape.sensor.threshold());
-            let name = &shape.name;
+            let (name, own) = (&shape.name, shape.sensor.threshold());
             cx.note(&format!(
-                "{name}: {touched}, but the model was trained at {trained}"
+                "{name}: touched at threshold {own}, but the model was trained at {trained}"
             ));
         }
         let touch = content.imprint();
@@ -453,9 +445,8 @@ fn read_line(line: &[u8]) -> Result<(Vec<Imprint>, Vec<Copied>), ReadError> {
         ("time", keys.time),
         ("channel", keys.channel),
     ];
-    let copied = copied
-        .into_iter()
-        .filter_map(|(key, value)| Some((key, value?)));
+    let copied = copied.into_iter();
+    let copied = copied.filter_map(|(key, value)| Some((key, value?)));
     Ok((touches, copied.collect()))
 }
 

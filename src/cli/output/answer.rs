@@ -7,11 +7,11 @@ use taxel_core::geometry::{Ellipse, Pen, Point, Side, Solid};
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::number::{differing, short};
 use taxel_core::recognition::{
-    AngleEstimate, Answer, AnswerState, Model, Nearest, Noise, PlacedSource, PoseEstimate,
-    SearchMethod,
+    AngleEstimate, Answer, AnswerState, Nearest, Noise, PlacedSource, PoseEstimate, SearchMethod,
 };
 use taxel_files::formats::value::{self, decimal, deviation, percent};
 
+use crate::cli::commands::recognise::Namer;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::plot::draw_over;
 use crate::cli::output::table::bar;
@@ -24,14 +24,10 @@ const BAR: usize = 30;
 /// The answer of recognition to one or several touches, in words and as JSON: of `taxel recognise`, and of frames that
 /// are named.
 pub(crate) struct Recognition<'a> {
-    pub(crate) model: &'a Model,
+    pub(crate) namer: &'a Namer,
     pub(crate) answer: Answer,
-    pub(crate) noise: Option<Noise>,
     /// The nearest imprint of the model; None if all are larger than the matrix.
     pub(crate) nearest: Option<Nearest>,
-    /// The number of shapes of the ranking to show; None for eight in words and all in JSON.
-    pub(crate) top: Option<usize>,
-    pub(crate) asks_pose: bool,
     /// The place of the shape; None if it is unknown.
     pub(crate) pose: Option<PoseReport>,
     /// The keys of a line that its answer repeats.
@@ -64,9 +60,12 @@ impl Serialize for Recognition<'_> {
             map.serialize_entry("tied", &tied)?;
         }
         map.serialize_entry("method", answer.method.name())?;
-        map.serialize_entry("noise", &self.noise.map(|noise| noise.flip()))?;
+        map.serialize_entry("noise", &self.namer.noise.map(|noise| noise.flip()))?;
         map.serialize_entry("at_rim", &answer.at_rim)?;
-        let ranking = answer.ranking.iter().take(self.top.unwrap_or(usize::MAX));
+        let ranking = answer
+            .ranking
+            .iter()
+            .take(self.namer.top.unwrap_or(usize::MAX));
         let ranking = ranking.map(|&(shape, probability)| Ranked {
             name: name(shape),
             probability,
@@ -78,7 +77,7 @@ impl Serialize for Recognition<'_> {
             imprint: &nearest.imprint,
         });
         map.serialize_entry("nearest", &nearest)?;
-        if self.asks_pose {
+        if self.namer.asks_pose {
             map.serialize_entry("pose", &self.pose.as_ref().map(PoseReport::json))?;
         }
         map.end()
@@ -100,7 +99,7 @@ impl Recognition<'_> {
         let answer = &self.answer;
         let mut text = self.verdict(touch) + "\n";
         // If no imprint of the model fits on the matrix, nothing was compared.
-        if let (Some(noise), Some(nearest)) = (self.noise, &self.nearest) {
+        if let (Some(noise), Some(nearest)) = (self.namer.noise, &self.nearest) {
             let compared = match answer.method {
                 SearchMethod::Exact => "only the imprint itself is looked up",
                 SearchMethod::OneFlip => "compared with imprints that differ by at most one taxel",
@@ -116,7 +115,7 @@ impl Recognition<'_> {
         if answer.at_rim {
             text += "the imprint reaches the rim of the matrix: it may be cut off\n";
         }
-        let top = self.top.unwrap_or(SHOWN);
+        let top = self.namer.top.unwrap_or(SHOWN);
         let shown = answer.ranking.iter().take(top);
         let names = Charset::current().column(shown.clone().map(|&(shape, _)| self.name(shape)));
         for (name, &(_, probability)) in names.iter().zip(shown) {
@@ -131,14 +130,16 @@ impl Recognition<'_> {
         }
         let pose = match &self.pose {
             Some(pose) => pose.text(touch),
-            None if self.asks_pose => "no pose of the model is known for this imprint\n".to_owned(),
+            None if self.namer.asks_pose => {
+                "no pose of the model is known for this imprint\n".to_owned()
+            }
             None => String::new(),
         };
         Charset::current().lines(&text) + &pose
     }
 
     pub(crate) fn name(&self, shape: usize) -> &str {
-        &self.model.shapes()[shape].name
+        &self.namer.model.shapes()[shape].name
     }
 
     /// Returns the first line: the shape and how certain it is, or why there is none.
@@ -164,7 +165,7 @@ impl Recognition<'_> {
 
     /// Draws the touch and the nearest imprint in one matrix.
     fn differences(&self, touch: &Imprint, nearest: &Nearest) -> String {
-        let dead = self.noise.as_ref().and_then(Noise::dead);
+        let dead = self.namer.noise.as_ref().and_then(Noise::dead);
         let sign = |column, row| {
             let is = |imprint: &Imprint| imprint.get(column, row);
             match (is(touch), is(&nearest.imprint)) {
@@ -178,10 +179,9 @@ impl Recognition<'_> {
         let (name, distance) = (self.name(nearest.shape), differing(nearest.distance));
         let mut text = format!("nearest: {name}, {distance}\n");
         for row in 0..touch.rows() {
-            let row: String = (0..touch.columns())
-                .map(|column| sign(column, row))
-                .collect();
-            text += &format!("  {row}\n");
+            text += "  ";
+            text.extend((0..touch.columns()).map(|column| sign(column, row)));
+            text.push('\n');
         }
         text += "  # both   + only in the touch   - only in the nearest imprint";
         text + if dead.is_some() { "   x dead\n" } else { "\n" }
@@ -315,18 +315,13 @@ impl Pen<f64> for Outline {
 
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {
         const PIECES: u16 = 128;
-        let Ellipse {
-            centre,
-            across,
-            along,
-            ..
-        } = *ellipse;
+        let own = *ellipse;
         let at = |piece: u16| {
             let turn = std::f64::consts::TAU * f64::from(piece) / f64::from(PIECES);
             let (sin, cos) = libm::sincos(turn);
             Point {
-                x: centre.x + across.x * cos + along.x * sin,
-                y: centre.y + across.y * cos + along.y * sin,
+                x: own.centre.x + own.across.x * cos + own.along.x * sin,
+                y: own.centre.y + own.across.y * cos + own.along.y * sin,
             }
         };
         for piece in 0..PIECES {
