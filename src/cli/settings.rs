@@ -305,7 +305,7 @@ impl TryFrom<BTreeMap<Place, BTreeMap<BoundKey, Act>>> for Keys {
             let mut keys = usual.of(change.context).flat_map(|row| row.keys.iter());
             !keys.any(|(key, action)| *key == change.key && Some(*action) == change.action)
         });
-        let keymap = Keymap::with(&changes).map_err(|(_, error)| error.to_string())?;
+        let keymap = Keymap::with(&changes)?;
         Ok(Self { changes, keymap })
     }
 }

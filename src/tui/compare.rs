@@ -67,10 +67,8 @@ impl Comparison {
             let widths = text.chars().map(|sign| spelling(sign).map_or(1, str::len));
             narrow(widths.sum::<usize>()) + GAP
         };
-        std::array::from_fn(|column| {
-            let widths = self.table.iter().map(|row| width(&row[column]));
-            widths.fold(0, u16::max)
-        })
+        let widest = |column: usize| self.table.iter().map(|row| width(&row[column])).max();
+        std::array::from_fn(|column| widest(column).unwrap_or(0))
     }
 
     /// Whether the values of the descriptors have room beside a view.
@@ -92,20 +90,21 @@ impl Comparison {
         let room = body.width.saturating_sub(if beside { table } else { 0 });
         let width = self.width(2).min(room.max(self.width(1)));
         let mut rest = body;
-        let views = shown.map(|view| {
+        let mut views = Vec::new();
+        for view in shown {
             let place = write::left_of(rest, rest.x + width);
             rest = write::right_of(rest, place.right());
-            (view, place)
-        });
-        let views: Vec<(usize, Rect)> = views.collect();
+            views.push((view, place));
+        }
         (views, beside.then_some(rest))
     }
 
     /// A title stands above the numbers of columns.
     fn grid(&self, area: Rect) -> Grid {
         let inner = beside_rulers(write::below(area, 1));
-        let [first, _] = &*self.imprints;
-        let size = if 2 * u16::from(first.columns()) <= inner.width {
+        let (left, top) = self.scrolled;
+        let (columns, rows) = (self.imprints[0].columns(), self.imprints[0].rows());
+        let size = if 2 * u16::from(columns) <= inner.width {
             CellSize::Square(1)
         } else {
             CellSize::Narrow
@@ -114,12 +113,8 @@ impl Comparison {
             x: inner.x,
             y: inner.y,
             size,
-            columns: Window::after(
-                self.scrolled.0,
-                first.columns(),
-                inner.width / size.columns(),
-            ),
-            rows: Window::after(self.scrolled.1, first.rows(), inner.height),
+            columns: Window::after(left, columns, inner.width / size.columns()),
+            rows: Window::after(top, rows, inner.height),
         }
     }
 
@@ -164,11 +159,8 @@ impl Comparison {
     fn draw_table(&self, theme: &Theme, buffer: &mut Buffer, area: Rect) {
         let most = self.table.len().saturating_sub(area.height.into());
         let top = usize::from(self.scrolled.1).min(most);
-        let rows = self
-            .table
-            .iter()
-            .take(1)
-            .chain(self.table.iter().skip(top + 1));
+        let heading = self.table.iter().take(1);
+        let rows = heading.chain(self.table.iter().skip(top + 1));
         for (index, (row, mut place)) in rows.zip(area.rows()).enumerate() {
             for (column, width) in self.widths().into_iter().enumerate() {
                 let role = match (index, column, row[1] == row[2]) {
@@ -216,7 +208,7 @@ fn text(descriptor: &Descriptor, measured: Value) -> String {
 fn signed(descriptor: &Descriptor, by: Value) -> String {
     let sign = |number: f64| {
         let text = text(descriptor, Value::Number(number));
-        let is_zero = text.bytes().all(|byte| !matches!(byte, b'1'..=b'9'));
+        let is_zero = !text.contains(|digit| matches!(digit, '1'..='9'));
         let plus = if number > 0.0 && !is_zero { "+" } else { "" };
         format!("{plus}{text}")
     };
@@ -234,10 +226,9 @@ fn difference(descriptor: &Descriptor, first: Value, second: Value) -> Value {
             Value::Number(f64::from(second) - f64::from(first))
         }
         (Value::Number(first), Value::Number(second)) => {
-            let by = second - first;
             Value::Number(match descriptor.dimension {
-                Dimension::Direction => 180.0 - (180.0 - by).rem_euclid(360.0),
-                _ => by,
+                Dimension::Direction => 180.0 - (180.0 - (second - first)).rem_euclid(360.0),
+                _ => second - first,
             })
         }
         (Value::Point(first), Value::Point(second)) => Value::Point(second - first),

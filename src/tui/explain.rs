@@ -15,8 +15,7 @@ use crate::tui::widget::write::{self, around, broken, narrow};
 
 const GLOSSARY: &str = include_str!("../../docs/glossary.md");
 
-#[derive(Clone, Debug)]
-pub struct Explain {
+pub(crate) struct Explain {
     descriptor: usize,
     top: usize,
     /// The value of each descriptor for the chosen region.
@@ -24,7 +23,7 @@ pub struct Explain {
 }
 
 impl Explain {
-    pub fn new(app: &App) -> Self {
+    pub(crate) fn new(app: &App) -> Self {
         let (region, pitch_mm) = (
             app.reading().description(app.chosen()),
             app.shown().sensor.pitch_mm(),
@@ -38,12 +37,12 @@ impl Explain {
                 format!("  {text}  ({scaled})")
             }))
         };
-        let key = app
+        let chosen = app
             .results_below()
             .map(|results| results.feature().descriptor.key);
-        let mut keys = DESCRIPTORS.iter().map(|own| Some(own.key));
+        let is_chosen = |own: &Descriptor| Some(own.key) == chosen;
         Self {
-            descriptor: keys.position(|own| own == key).unwrap_or(0),
+            descriptor: DESCRIPTORS.iter().position(is_chosen).unwrap_or(0),
             top: 0,
             values: DESCRIPTORS
                 .iter()
@@ -68,11 +67,8 @@ impl Explain {
             } else if is_drawing {
                 lines.push(line.to_owned());
             } else if line.is_empty() {
-                lines.extend(
-                    broken(&paragraph, width.into())
-                        .into_iter()
-                        .map(str::to_owned),
-                );
+                let broken = broken(&paragraph, width.into()).into_iter();
+                lines.extend(broken.map(str::to_owned));
                 paragraph.clear();
                 if lines.last().is_some_and(|last| !last.is_empty()) {
                     lines.push(String::new());

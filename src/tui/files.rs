@@ -46,13 +46,13 @@ pub(crate) fn open(name: &str) -> Result<Content, String> {
         return Err("not a regular file".to_owned());
     }
     let bytes = beginning(&path).map_err(sentence)?;
-    match read_content(&bytes) {
-        Ok(content) => Ok(content),
-        Err(error) if may_be_recording(&bytes) => {
-            Err(format!("{error}; if this is a recording, use :watch"))
+    read_content(&bytes).map_err(|error| {
+        if may_be_recording(&bytes) {
+            format!("{error}; if this is a recording, use :watch")
+        } else {
+            error.to_string()
         }
-        Err(error) => Err(error.to_string()),
-    }
+    })
 }
 
 fn beginning(path: &Path) -> std::io::Result<Vec<u8>> {
@@ -65,16 +65,14 @@ fn refuse_imprint(source: &FrameSource, request: &WatchRequest) -> Result<(), St
     let (FrameSource::File(path), None) = (source, request.options.format) else {
         return Ok(());
     };
-    let what = match beginning(path) {
-        Ok(bytes) if may_be_recording(&bytes) => return Ok(()),
-        Ok(bytes) => read_content(&bytes),
-        // Reported when the file is watched.
-        Err(_) => return Ok(()),
-    };
-    let what = match what {
-        Ok(Content::Shape(_)) => "a shape",
-        Ok(Content::Imprint(_)) => "an imprint",
-        Err(_) => return Ok(()),
+    // What cannot be read is reported when the file is watched.
+    let bytes = beginning(path)
+        .ok()
+        .filter(|bytes| !may_be_recording(bytes));
+    let what = match bytes.map(|bytes| read_content(&bytes)) {
+        Some(Ok(Content::Shape(_))) => "a shape",
+        Some(Ok(Content::Imprint(_))) => "an imprint",
+        _ => return Ok(()),
     };
     let name = source.name();
     Err(format!("{name}: {what}, not frames; :open opens it"))
@@ -98,8 +96,7 @@ pub(crate) fn write(
 /// Returns the absolute path of a written file; if it cannot be found, the path as it was given.
 pub(crate) fn absolute(path: &Path) -> String {
     let whole = std::path::absolute(path);
-    let whole = whole.as_deref().unwrap_or(path);
-    whole.to_string_lossy().into_owned()
+    whole.as_deref().unwrap_or(path).display().to_string()
 }
 
 /// Returns the paths that begin like this, as they are typed; folders end in a slash. Hidden ones are offered only if
@@ -109,11 +106,8 @@ pub(crate) fn paths(start: &str) -> Vec<String> {
         .rfind('/')
         .map_or(("", start), |slash| start.split_at(slash + 1));
     let place = if folder.is_empty() { "./" } else { folder };
-    let entries = below_home(place).map(fs::read_dir);
-    let Some(Ok(entries)) = entries else {
-        return Vec::new();
-    };
-    let offered = entries.flatten().filter_map(|entry| {
+    let entries = below_home(place).and_then(|place| fs::read_dir(place).ok());
+    let offered = entries.into_iter().flatten().flatten().filter_map(|entry| {
         let name = entry.file_name().into_string().ok()?;
         let fits = name.starts_with(typed) && (typed.starts_with('.') || !name.starts_with('.'));
         let slash = if Path::is_dir(&entry.path()) { "/" } else { "" };

@@ -221,8 +221,8 @@ impl Grid {
     /// Draws the numbers of columns and rows, with arrows where there are more cells.
     pub fn draw_rulers(&self, theme: &Theme, buffer: &mut Buffer) {
         let [above, below, left, right] = theme.more();
-        let ((more_above, more_below), (more_left, more_right)) =
-            (self.rows.hidden(), self.columns.hidden());
+        let (more_above, more_below) = self.rows.hidden();
+        let (more_left, more_right) = self.columns.hidden();
         let (width, height) = self.characters();
         // Numbers end before an arrow.
         let room = width.saturating_sub(more_right.into());

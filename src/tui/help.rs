@@ -38,7 +38,7 @@ struct Line {
     entry: usize,
     title: &'static str,
     keys: String,
-    text: String,
+    text: &'static str,
 }
 
 impl Help {
@@ -56,10 +56,11 @@ impl Help {
         let room = usize::from(columns).saturating_sub(KEYS);
         let mut lines = Vec::new();
         for (entry, line) in help(self.context, keymap).into_iter().enumerate() {
-            let (title, mut keys, text) = match line {
-                HelpLine::Place(place) => (place.title(), String::new(), ""),
-                HelpLine::Keys(keys, text) => ("", keys, text),
-            };
+            let HelpLine {
+                title,
+                mut keys,
+                text,
+            } = line;
             let mut texts = broken(text, room);
             if texts.is_empty() || write::width(&keys) + 2 >= KEYS {
                 texts.insert(0, "");
@@ -68,7 +69,7 @@ impl Help {
                 entry,
                 title,
                 keys: std::mem::take(&mut keys),
-                text: text.to_owned(),
+                text,
             }));
         }
         lines
@@ -85,22 +86,15 @@ impl Help {
         self.top = self.top(&lines, rows);
     }
 
-    /// The entries that have the wanted text.
-    fn matching(&self, keymap: &Keymap, wanted: &str) -> Vec<usize> {
-        let has = |line: &HelpLine| match line {
-            HelpLine::Place(place) => contains(place.title(), wanted),
-            HelpLine::Keys(keys, text) => contains(keys, wanted) || contains(text, wanted),
-        };
-        let lines = help(self.context, keymap).into_iter().enumerate();
-        lines
-            .filter(|(_, line)| has(line))
-            .map(|(entry, _)| entry)
-            .collect()
-    }
-
     /// Goes to the first match of a text from the first visible entry on, then from the start.
     fn search(&mut self, wanted: &str, keymap: &Keymap, room: (u16, u16)) {
-        self.matches = self.matching(keymap, wanted);
+        let has = |line: &HelpLine| {
+            let texts = [line.title, &line.keys, line.text];
+            texts.iter().any(|text| contains(text, wanted))
+        };
+        let all = help(self.context, keymap).into_iter().enumerate();
+        let matches = all.filter(|(_, line)| has(line));
+        self.matches = matches.map(|(entry, _)| entry).collect();
         wanted.clone_into(&mut self.wanted);
         let lines = self.lines(keymap, room.0);
         let top = lines.get(self.top(&lines, room.1));
@@ -116,17 +110,12 @@ impl Help {
 
     /// The number of the match in sight, and how many there are.
     fn number(&self) -> Option<(usize, usize)> {
-        self.found().map(|_| (self.at + 1, self.matches.len()))
+        (!self.matches.is_empty()).then_some((self.at + 1, self.matches.len()))
     }
 
-    fn show_match(&mut self, keymap: &Keymap, room: (u16, u16)) {
-        if let Some(entry) = self.found() {
-            self.show(entry, keymap, room);
-        }
-    }
-
-    /// Makes an entry visible: if it is out of sight, scrolls so that a third of the lines is above it.
-    fn show(&mut self, entry: usize, keymap: &Keymap, (columns, rows): (u16, u16)) {
+    /// Makes the match visible: if it is out of sight, scrolls so that a third of the lines is above it.
+    fn show_match(&mut self, keymap: &Keymap, (columns, rows): (u16, u16)) {
+        let Some(entry) = self.found() else { return };
         let lines = self.lines(keymap, columns);
         let (top, height) = (self.top(&lines, rows), usize::from(rows));
         let first = lines.partition_point(|line| line.entry < entry);
@@ -196,7 +185,7 @@ impl Page for Help {
                 pieces.push((if is_first { "> " } else { "  " }, Role::Key));
                 pieces.extend(marked(&line.keys, wanted, Role::Key));
                 pieces.push((&pad, Role::Key));
-                pieces.extend(marked(&line.text, wanted, Role::Text));
+                pieces.extend(marked(line.text, wanted, Role::Text));
             }
             write::line(buffer, row, theme, pieces);
         }

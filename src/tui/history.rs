@@ -22,39 +22,28 @@ use crate::tui::widget::rows::{ListRows, moved};
 use crate::tui::widget::theme::Role;
 use crate::tui::widget::write;
 
-#[derive(Clone, Debug)]
-pub struct HistoryDialog {
-    start: String,
-    steps: Vec<String>,
+pub(crate) struct HistoryDialog {
+    /// The start, then the steps.
+    rows: Vec<String>,
     present: usize,
     selected: usize,
 }
 
-const START: &str = "the start";
-
 impl HistoryDialog {
     /// `start` is what brought the oldest state, in words; None if the program began with it.
-    pub fn new(start: Option<&str>, steps: Vec<String>, present: usize) -> Self {
+    pub(crate) fn new(start: Option<&str>, steps: Vec<String>, present: usize) -> Self {
+        let mut rows = steps;
+        rows.insert(0, start.unwrap_or("the start").to_owned());
+        let selected = present;
         Self {
-            start: start.unwrap_or(START).to_owned(),
-            steps,
+            rows,
             present,
-            selected: present,
+            selected,
         }
     }
 
-    pub fn select(&mut self, row: usize) {
-        self.selected = row.min(self.steps.len());
-    }
-
-    fn rows(&self) -> impl Iterator<Item = &str> {
-        std::iter::once(&self.start)
-            .chain(&self.steps)
-            .map(String::as_str)
-    }
-
     fn visible(&self, area: Rect) -> ListRows {
-        ListRows::around(write::below(area, 1), self.steps.len() + 1, self.selected)
+        ListRows::around(write::below(area, 1), self.rows.len(), self.selected)
     }
 }
 
@@ -76,7 +65,7 @@ impl Page for HistoryDialog {
             }
             _ => {
                 if let Some(row) = moved(step, message) {
-                    self.select(row);
+                    self.selected = row.min(self.rows.len() - 1);
                 }
             }
         }
@@ -92,12 +81,12 @@ impl Page for HistoryDialog {
     }
 
     fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
-        let count = format!("   {}", counted(self.steps.len() as u64, "step"));
+        let count = format!("   {}", counted(self.rows.len() as u64 - 1, "step"));
         let head = [("History", Role::Title), (count.as_str(), Role::Quiet)];
         write::line(buffer, area, theme, head);
         let visible = self.visible(area);
-        let width = self.steps.len().to_string().len();
-        for (index, row, text) in visible.visible(self.rows()) {
+        let width = (self.rows.len() - 1).to_string().len();
+        for (index, row, text) in visible.visible(self.rows.iter()) {
             let selected = index == self.selected;
             // Signs mark the rows, too, for terminals that cannot reverse.
             let sign = if selected { '>' } else { ' ' };

@@ -354,7 +354,7 @@ impl App {
     /// and the journal share one reading.
     pub(in crate::tui) fn read(&mut self) {
         let form = find::<FormDialog>(&self.pages);
-        let document = form.map_or(self.history.present(), FormDialog::shown);
+        let document = form.map_or(self.history.present(), |form| &form.shown);
         if *document != self.shown {
             self.reading = Reading::of(document);
             self.shown = document.clone();

@@ -11,11 +11,11 @@
 
 use std::time::Duration;
 
-use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
-use taxel_core::parameter::Parameter;
-use taxel_core::pose::{Anchor, Axis, DecimalRange, GivenRanges, PoseGrid, Ranges, default_ranges};
-use taxel_core::sensor::Sensor;
+use taxel_core::pose::{
+    Anchor, Axis, DecimalRange, GivenRanges, PoseGrid, RangeError, Ranges, default_ranges,
+};
+use taxel_core::sensor::{MatrixSize, Sensor};
 use taxel_core::source::Source;
 use taxel_files::formats::value::{counted, time_in_words};
 
@@ -25,12 +25,11 @@ use crate::tui::app::page::{Canvas, Flow, Page, Slot};
 use crate::tui::app::state::App;
 use crate::tui::explore::name_of;
 use crate::tui::explore::work::{measure, sweep};
-use crate::tui::form::RememberedRanges;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Context;
-use crate::tui::widget::field_list::{FieldList, FieldRows, FormError, FormField};
+use crate::tui::widget::field_list::{Field, FieldList, FieldRows, FormError, draw_choice};
 use crate::tui::widget::text_field::TextField;
-use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::theme::Role;
 use crate::tui::widget::write::{self, narrow};
 
 const LONGEST: usize = 40;
@@ -40,59 +39,49 @@ const INPUT: usize = 16;
 /// With more angles and zooms, nothing is computed for each of them while typing.
 const MOST_ORIENTATIONS: u64 = 20_000;
 
-pub(crate) struct RangeField {
-    axis: Axis,
-    input: TextField,
-    /// The text that the form proposed. While the field has it, it follows the other fields.
-    proposed: Option<String>,
+/// The ranges accepted last.
+#[derive(Clone, Debug)]
+pub(crate) struct RangesMemory {
+    of: &'static str,
+    size: MatrixSize,
+    anchor: Anchor,
+    ranges: GivenRanges,
 }
 
-impl RangeField {
-    fn is_proposed(&self) -> bool {
-        self.proposed.as_deref() == Some(self.text())
-    }
-}
-
-impl FormField for RangeField {
-    fn parameter(&self) -> Parameter {
-        self.axis.parameter()
-    }
-
-    fn input(&self) -> &TextField {
-        &self.input
-    }
-
-    fn input_mut(&mut self) -> &mut TextField {
-        &mut self.input
-    }
-
-    fn error(&self, sensor: &Sensor) -> Option<FormError> {
-        let range: DecimalRange = match self.text().parse() {
-            Ok(range) => range,
-            Err(error) => {
-                return Some(FormError {
-                    brief: error.expected(),
-                    full: format!("{}: {error}", self.parameter().row().label),
-                });
-            }
-        };
-        let mut ends = [range.value(0), range.last()].into_iter();
-        let error = ends.find_map(|value| sensor.check(self.parameter(), value).err());
-        error.map(FormError::from)
+impl RangesMemory {
+    /// The range of an axis. Places belong to the shape and the sensor.
+    fn get(&self, source: &Source, sensor: &Sensor, axis: Axis) -> Option<DecimalRange> {
+        let place = matches!(axis, Axis::X0 | Axis::Y0);
+        let suits = source.kind_name() == self.of && self.size == sensor.size();
+        self.ranges[axis].filter(|_| !place || suits)
     }
 }
 
 pub(crate) struct RangesForm {
     source: Source,
-    form: FieldList<RangeField>,
+    form: FieldList,
     anchor: Anchor,
     /// The number of taxels that no sweep of the shape has.
     by_hand: u32,
-    grid: Result<PoseGrid, String>,
+    pub(super) grid: Result<PoseGrid, String>,
     /// The poses that the sensor cuts off, unless there are too many orientations to count.
     cut_off: Option<u64>,
     /// The time that the sweep takes, once a job has measured it.
-    time: Option<Duration>,
+    pub(super) time: Option<Duration>,
+}
+
+fn check(field: &Field, sensor: &Sensor) -> Result<(), FormError> {
+    let range: DecimalRange = field
+        .text()
+        .parse()
+        .map_err(|error: RangeError| FormError {
+            brief: error.expected(),
+            full: format!("{}: {error}", field.parameter.row().label),
+        })?;
+    for end in [range.value(0), range.last()] {
+        sensor.check(field.parameter, end)?;
+    }
+    Ok(())
 }
 
 impl RangesForm {
@@ -101,26 +90,32 @@ impl RangesForm {
     pub(super) fn new(
         (source, sensor, by_hand): (Source, Sensor, u32),
         earlier: Option<&PoseGrid>,
-        last: Option<&RememberedRanges>,
+        last: Option<&RangesMemory>,
     ) -> Self {
         let last = last.filter(|_| earlier.is_none());
-        let known = |axis| last.and_then(|last| last.get(source.kind_name(), &sensor, axis));
         let ranges = earlier.map_or_else(Ranges::default, |grid| *grid.ranges());
         let fields = Axis::of(&source).map(|axis| {
-            let text = known(axis).unwrap_or(ranges[axis]).to_string();
-            let is_own = earlier.is_some() || known(axis).is_some() || axis == Axis::Angle;
-            RangeField {
-                axis,
-                proposed: (!is_own).then(|| text.clone()),
-                input: TextField::new(text, LONGEST),
+            let known = last.and_then(|last| last.get(&source, &sensor, axis));
+            let text = known.unwrap_or(ranges[axis]).to_string();
+            let is_own = earlier.is_some() || known.is_some() || axis == Axis::Angle;
+            Field {
+                parameter: axis.parameter(),
+                input: TextField::new(text.as_str(), LONGEST),
+                proposed: (!is_own).then_some(text),
+                initial: None,
             }
         });
         let anchor = earlier.map(PoseGrid::anchor);
-        let anchor = anchor.or(last.map(|last| last.anchor));
         let mut form = Self {
-            form: FieldList::new(fields.collect(), true, sensor),
+            form: FieldList {
+                fields: fields.collect(),
+                has_choice: true,
+                focus: None,
+                sensor,
+                check,
+            },
             source,
-            anchor: anchor.unwrap_or_default(),
+            anchor: anchor.or(last.map(|last| last.anchor)).unwrap_or_default(),
             by_hand,
             grid: Err(String::new()),
             cut_off: None,
@@ -131,24 +126,28 @@ impl RangesForm {
         form
     }
 
+    /// The ranges that the user has given; None if one of them is wrong.
+    fn given(&self) -> Option<GivenRanges> {
+        let mut given = GivenRanges::default();
+        for (axis, field) in Axis::of(&self.source).zip(&self.form.fields) {
+            if !field.is_proposed() {
+                given[axis] = Some(field.text().parse().ok()?);
+            }
+        }
+        Some(given)
+    }
+
     /// Proposes ranges that fit the shape at the angles and zooms of the other fields, unless these are wrong.
     fn propose(&mut self) -> Option<()> {
-        let mut given = GivenRanges::default();
-        let mut orientations = 1;
-        let fields = self.form.fields.iter();
-        for field in fields.filter(|field| !field.is_proposed()) {
-            let range: DecimalRange = field.text().parse().ok()?;
-            if !matches!(field.axis, Axis::X0 | Axis::Y0) {
-                orientations *= range.count();
-            }
-            given[field.axis] = Some(range);
+        let given = self.given()?;
+        let turns = [Axis::Angle, Axis::ZoomX, Axis::ZoomY].map(|axis| given[axis]);
+        let orientations: u64 = turns.iter().flatten().map(DecimalRange::count).product();
+        if orientations > MOST_ORIENTATIONS {
+            return None;
         }
-        let is_few = orientations <= MOST_ORIENTATIONS;
-        let (source, sensor) = (&self.source, &self.form.sensor);
-        let ranges = is_few.then(|| default_ranges(source, sensor, self.anchor, &given));
-        let ranges = ranges?.ok()?;
-        for field in &mut self.form.fields {
-            let text = ranges[field.axis].to_string();
+        let ranges = default_ranges(&self.source, &self.form.sensor, self.anchor, &given).ok()?;
+        for (axis, field) in Axis::of(&self.source).zip(&mut self.form.fields) {
+            let text = ranges[axis].to_string();
             if field.is_proposed() && field.text() != text {
                 field.input = TextField::new(text.as_str(), LONGEST);
                 field.proposed = Some(text);
@@ -157,19 +156,21 @@ impl RangesForm {
         Some(())
     }
 
-    /// Makes the grid of the fields. Returns it if it is a new one.
-    fn follow(&mut self) -> Option<&PoseGrid> {
+    /// Makes the grid of the fields. Returns whether it is a new one.
+    fn follow(&mut self) -> bool {
         self.propose();
         let grid = self.made();
         if grid == self.grid {
-            return None;
+            return false;
         }
         (self.grid, self.cut_off, self.time) = (grid, None, None);
-        let grid = self.grid.as_ref().ok()?;
+        let Ok(grid) = &self.grid else {
+            return false;
+        };
         if grid.rows() / grid.rows_per_orientation() <= MOST_ORIENTATIONS {
             self.cut_off = Some(grid.poses_beyond_sensor());
         }
-        Some(grid)
+        true
     }
 
     fn made(&self) -> Result<PoseGrid, String> {
@@ -177,35 +178,11 @@ impl RangesForm {
             return Err(error.full);
         }
         let mut ranges = Ranges::default();
-        for field in &self.form.fields {
-            ranges[field.axis] = field.text().parse().unwrap_or(ranges[field.axis]);
+        for (axis, field) in Axis::of(&self.source).zip(&self.form.fields) {
+            ranges[axis] = field.text().parse().unwrap_or(ranges[axis]);
         }
-        let (source, sensor) = (self.source.clone(), self.form.sensor);
-        let grid = PoseGrid::new(source, sensor, self.anchor, ranges);
+        let grid = PoseGrid::new(self.source.clone(), self.form.sensor, self.anchor, ranges);
         grid.map_err(|error| error.to_string())
-    }
-
-    pub(super) fn grid(&self) -> Option<&PoseGrid> {
-        self.grid.as_ref().ok()
-    }
-
-    pub(super) fn take_estimate(&mut self, grid: &PoseGrid, time: Duration) {
-        if self.grid.as_ref() == Ok(grid) {
-            self.time = Some(time);
-        }
-    }
-
-    fn remembered(&self) -> RememberedRanges {
-        let fields = self.form.fields.iter();
-        let own = fields.filter(|field| !field.is_proposed());
-        RememberedRanges {
-            of: self.source.kind_name().to_owned(),
-            size: self.form.sensor.size(),
-            anchor: self.anchor,
-            ranges: own
-                .filter_map(|field| Some((field.axis, field.text().parse().ok()?)))
-                .collect(),
-        }
     }
 
     /// The title is above them; below them are three lines, or as many as the rows leave, but at least one.
@@ -215,24 +192,6 @@ impl RangesForm {
         let height = below.height.saturating_sub(foot);
         let focus = self.form.focus.unwrap_or(rows - 1);
         FieldRows::of(Rect { height, ..below }, 0, rows, Some(focus))
-    }
-
-    fn draw_anchor(&self, theme: &Theme, buffer: &mut Buffer, row: Rect) -> Position {
-        let (name, meaning) = match self.anchor {
-            Anchor::Corner => ("corner", "top left, before turning"),
-            Anchor::Centre => ("centre", "point it turns about"),
-        };
-        let has_focus = self.form.focus.is_none();
-        let role = if has_focus { Role::Focus } else { Role::Text };
-        let pieces = [
-            ("Anchor  ", Role::Text),
-            ("< ", Role::Quiet),
-            (name, role),
-            (" > ", Role::Quiet),
-            (meaning, Role::Quiet),
-        ];
-        write::line(buffer, row, theme, pieces);
-        Position::new(row.x.saturating_add(narrow(LABEL)), row.y)
     }
 
     /// Says how many poses there are, or what is wrong with all fields together.
@@ -271,7 +230,12 @@ impl Page for RangesForm {
         match message {
             Message::Accept => match self.grid.clone() {
                 Ok(grid) => {
-                    app.forms.ranges = Some(self.remembered());
+                    app.forms.ranges = self.given().map(|ranges| RangesMemory {
+                        of: self.source.kind_name(),
+                        size: self.form.sensor.size(),
+                        anchor: self.anchor,
+                        ranges,
+                    });
                     sweep(app, grid);
                     return Flow::Close;
                 }
@@ -304,7 +268,7 @@ impl Page for RangesForm {
             }
             message => self.form.take(message),
         }
-        if self.follow().is_some() {
+        if self.follow() {
             measure(app, self);
         }
         Flow::Stay
@@ -325,8 +289,15 @@ impl Page for RangesForm {
         let mut cursor = rows.draw(theme, fields, (LABEL, INPUT), |_| None, buffer);
         let mut visible = rows.visible();
         if let Some((_, row)) = visible.find(|(index, _)| *index == fields.fields.len()) {
-            let at = self.draw_anchor(theme, buffer, row);
-            cursor = cursor.or(fields.focus.is_none().then_some(at));
+            let meaning = match self.anchor {
+                Anchor::Corner => "top left, before turning",
+                Anchor::Centre => "point it turns about",
+            };
+            let (chosen, on_anchor) = (("Anchor  ", self.anchor.name()), fields.focus.is_none());
+            let remark = (meaning, Role::Quiet);
+            draw_choice(theme, chosen, on_anchor, remark, buffer, row);
+            let at = Position::new(row.x.saturating_add(narrow(LABEL)), row.y);
+            cursor = cursor.or(on_anchor.then_some(at));
         }
         let mut rest = rows.rest(area);
         for (text, role) in self.summary() {

@@ -98,7 +98,7 @@ pub(super) fn open_ranges(app: &mut App, earlier: Option<&PoseGrid>) {
 
 /// Estimates the time of a sweep: the best of several short ones. A script would not show the same twice.
 pub(super) fn measure(app: &mut App, form: &RangesForm) {
-    let Some(grid) = form.grid().filter(|_| app.jobs.has_threads()).cloned() else {
+    let Some(grid) = form.grid.clone().ok().filter(|_| app.jobs.has_threads()) else {
         return;
     };
     app.jobs.run(jobs::Slot::Measure, move |progress| {
@@ -111,8 +111,10 @@ pub(super) fn measure(app: &mut App, form: &RangesForm) {
         }
         let time = Duration::try_from_secs_f64(best * sample.factor);
         answer(move |app| {
-            if let (Some(form), Ok(time)) = (app.page_mut::<RangesForm>(), time) {
-                form.take_estimate(&grid, time);
+            if let Some(form) = app.page_mut::<RangesForm>()
+                && form.grid.as_ref() == Ok(&grid)
+            {
+                form.time = time.ok();
             }
         })
     });

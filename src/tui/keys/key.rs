@@ -46,7 +46,7 @@ pub enum Key {
 
 /// The names in angle brackets. If a key has several, the first one is written. The names with `C-` are those of keys
 /// that a terminal cannot tell from the letter with Ctrl.
-const NAMES: [(&str, Key); 38] = [
+const NAMES: [(&str, Key); 26] = [
     ("Left", Key::Arrow(Arrow::Left)),
     ("Right", Key::Arrow(Arrow::Right)),
     ("Up", Key::Arrow(Arrow::Up)),
@@ -66,18 +66,6 @@ const NAMES: [(&str, Key); 38] = [
     ("S-Tab", Key::BackTab),
     ("BS", Key::Backspace),
     ("Del", Key::Delete),
-    ("F1", Key::Function(1)),
-    ("F2", Key::Function(2)),
-    ("F3", Key::Function(3)),
-    ("F4", Key::Function(4)),
-    ("F5", Key::Function(5)),
-    ("F6", Key::Function(6)),
-    ("F7", Key::Function(7)),
-    ("F8", Key::Function(8)),
-    ("F9", Key::Function(9)),
-    ("F10", Key::Function(10)),
-    ("F11", Key::Function(11)),
-    ("F12", Key::Function(12)),
     ("Space", Key::Char(' ')),
     ("lt", Key::Char('<')),
     ("gt", Key::Char('>')),
@@ -93,6 +81,7 @@ impl fmt::Display for Key {
             (Self::Char('>'), _) => f.write_str(">"),
             (_, Some((name, _))) => write!(f, "<{name}>"),
             (Self::Ctrl(letter), _) => write!(f, "<C-{letter}>"),
+            (Self::Function(number), _) => write!(f, "<F{number}>"),
             // At the end of a script's line, blanks are ignored.
             (Self::Char(blank), _) if blank.is_whitespace() || blank.is_control() => {
                 write!(f, "<U+{:04X}>", u32::from(blank))
@@ -155,7 +144,11 @@ pub fn parse(text: &str) -> Result<Vec<Key>, KeyError> {
             let unknown = || KeyError::Unknown { at, found: found() };
             let name = &rest[1..end.ok_or_else(unknown)?];
             let (times, key) = match name.split_once("x:") {
-                Some((times, name)) => (times, character(name).or_else(|| named(name))),
+                Some((times, name)) => (
+                    times,
+                    name.parse()
+                        .map_or_else(|_| named(name), |own| Some(Key::Char(own))),
+                ),
                 None => ("1", named(name)),
             };
             let key = key.ok_or_else(unknown)?;
@@ -177,32 +170,27 @@ pub fn parse(text: &str) -> Result<Vec<Key>, KeyError> {
     Ok(keys)
 }
 
-fn character(text: &str) -> Option<Key> {
-    let mut characters = text.chars();
-    let first = characters.next()?;
-    characters.next().is_none().then_some(Key::Char(first))
-}
-
 fn named(name: &str) -> Option<Key> {
     let ctrl = || {
         let letter = name
             .strip_prefix("C-")
             .or_else(|| name.strip_prefix("c-"))?;
-        match character(letter)? {
-            Key::Char(letter) if letter.is_ascii_alphabetic() => {
-                Some(Key::Ctrl(letter.to_ascii_lowercase()))
-            }
-            _ => None,
-        }
+        let letter = letter.parse().ok().filter(char::is_ascii_alphabetic)?;
+        Some(Key::Ctrl(letter.to_ascii_lowercase()))
+    };
+    let function = || {
+        let number = name.strip_prefix(['F', 'f'])?;
+        let number = (1..=12).find(|own: &u8| own.to_string() == number)?;
+        Some(Key::Function(number))
     };
     let numbered = || {
         let number = u32::from_str_radix(name.strip_prefix("U+")?, 16).ok()?;
         char::from_u32(number).map(Key::Char)
     };
-    let listed = NAMES
-        .iter()
-        .find(|(known, _)| known.eq_ignore_ascii_case(name));
-    listed.map(|&(_, key)| key).or_else(ctrl).or_else(numbered)
+    let mut listed = NAMES.iter();
+    let listed = listed.find(|(known, _)| known.eq_ignore_ascii_case(name));
+    let listed = listed.map(|&(_, key)| key);
+    listed.or_else(ctrl).or_else(function).or_else(numbered)
 }
 
 #[cfg(test)]
@@ -217,7 +205,7 @@ mod tests {
         ];
         let keys: Vec<Key> = named
             .chain(others.map(Key::Char))
-            .chain([Key::Ctrl('r')])
+            .chain([Key::Ctrl('r'), Key::Function(1), Key::Function(12)])
             .collect();
         for &key in &keys {
             let written = key.to_string();
@@ -227,7 +215,9 @@ mod tests {
         // A terminal sends the same byte for both.
         assert_eq!(parse("<C-i><C-m>"), Ok(vec![Key::Tab, Key::Enter]));
         assert_eq!(Key::Char('\u{3000}').to_string(), "<U+3000>");
-        assert!(parse("<U+110000>").is_err() && parse("<U+>").is_err());
+        for wrong in ["<U+110000>", "<U+>", "<F0>", "<F13>", "<F01>"] {
+            assert!(parse(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

@@ -90,13 +90,7 @@ impl Context {
     /// The actions that keys of the place can have.
     pub fn actions(self) -> Vec<&'static Action> {
         let rows = DEFAULT_KEYS.iter().filter(|row| row.context == self);
-        let mut actions: Vec<&'static Action> = Vec::new();
-        for action in rows.flat_map(|row| &row.actions) {
-            if !actions.contains(action) {
-                actions.push(action);
-            }
-        }
-        actions
+        rows.flat_map(|row| row.actions.iter().copied()).collect()
     }
 }
 
@@ -114,15 +108,6 @@ pub struct Binding {
 impl Binding {
     pub fn does(&self, message: &Message) -> bool {
         self.actions.iter().any(|action| action.message == *message)
-    }
-
-    #[must_use]
-    pub fn without(&self, others: &[Key]) -> Self {
-        let keys = self.keys.iter().filter(|(key, _)| !others.contains(key));
-        Self {
-            keys: keys.copied().collect(),
-            ..self.clone()
-        }
     }
 
     pub fn labels(&self) -> String {
@@ -148,8 +133,10 @@ impl Binding {
     }
 
     pub fn short_labels(&self) -> String {
-        let parts = self.short_parts().into_iter();
-        parts.map(|(label, _)| label).collect()
+        self.short_parts()
+            .into_iter()
+            .map(|(label, _)| label)
+            .collect()
     }
 
     pub fn short_parts(&self) -> Vec<(String, Option<&'static Action>)> {
@@ -202,19 +189,6 @@ pub struct Change {
     pub action: Option<&'static Action>,
 }
 
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum KeymapError {
-    #[error("{0} closes what is open and cannot be changed")]
-    WayOut(Key),
-    #[error("{0} is bound twice here")]
-    Twice(Key),
-    #[error("{action:?} is not an action of [keys.{}]; 'taxel config' lists them", context.name())]
-    Elsewhere {
-        action: &'static str,
-        context: Context,
-    },
-}
-
 #[derive(Clone, Debug)]
 pub struct Keymap {
     rows: Vec<Binding>,
@@ -229,8 +203,7 @@ impl Default for Keymap {
 }
 
 impl Keymap {
-    /// An error comes with the index of the change that is refused.
-    pub fn with(changes: &[Change]) -> Result<Self, (usize, KeymapError)> {
+    pub fn with(changes: &[Change]) -> Result<Self, String> {
         for (index, change) in changes.iter().enumerate() {
             let Change {
                 context,
@@ -238,16 +211,18 @@ impl Keymap {
                 action,
             } = *change;
             let is_same = |other: &Change| other.context == context && other.key == key;
-            let error = match action {
-                _ if matches!(key, Key::Esc | Key::Ctrl('c')) => KeymapError::WayOut(key),
-                _ if changes[..index].iter().any(is_same) => KeymapError::Twice(key),
-                Some(action) if !context.actions().contains(&action) => KeymapError::Elsewhere {
-                    action: action.name,
-                    context,
-                },
-                _ => continue,
-            };
-            return Err((index, error));
+            if matches!(key, Key::Esc | Key::Ctrl('c')) {
+                return Err(format!("{key} closes what is open and cannot be changed"));
+            }
+            if changes[..index].iter().any(is_same) {
+                return Err(format!("{key} is bound twice here"));
+            }
+            if let Some(action) = action.filter(|own| !context.actions().contains(own)) {
+                let (action, place) = (action.name, context.name());
+                return Err(format!(
+                    "{action:?} is not an action of [keys.{place}]; 'taxel config' lists them"
+                ));
+            }
         }
         let mut keymap = Self::default();
         for row in &mut keymap.rows {
@@ -277,15 +252,16 @@ impl Keymap {
         self.rows.iter().filter(move |row| row.context == context)
     }
 
-    fn keys_of(&self, context: Context) -> impl Iterator<Item = &(Key, &'static Action)> {
-        self.of(context).flat_map(|row| &row.keys)
+    /// The keys of a place and of the outer ones, in the order of their meaning.
+    fn around(&self, context: Context) -> impl Iterator<Item = &(Key, &'static Action)> {
+        let rows = context.around().flat_map(|place| self.of(place));
+        rows.flat_map(|row| &row.keys)
     }
 
     /// A key that has no binding there is looked up in the outer places; if it has none there either, a character is
     /// typed if the place has a field.
     pub fn lookup(&self, context: Context, key: Key) -> Option<Message> {
-        let mut keys = context.around().flat_map(|place| self.keys_of(place));
-        match (keys.find(|(bound, _)| *bound == key), key) {
+        match (self.around(context).find(|(bound, _)| *bound == key), key) {
             (Some((_, action)), _) => Some(action.message.clone()),
             (None, Key::Char(character)) if context.takes_text() => Some(Message::Type(character)),
             _ => None,
@@ -294,44 +270,51 @@ impl Keymap {
 
     /// The key of an action, or how to type it if it has none.
     pub fn label(&self, context: Context, action: &Action) -> String {
-        let mut keys = context.around().flat_map(|place| self.keys_of(place));
-        let key = keys.find(|(_, own)| *own == action);
+        let key = self.around(context).find(|(_, own)| *own == action);
         key.map_or_else(|| format!(":{}", action.name), |(key, _)| key.label())
     }
 }
 
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum HelpLine {
-    Place(Context),
-    Keys(String, &'static str),
+/// A line of help: the title of a place, or keys with what they do.
+#[derive(Clone, Debug)]
+pub struct HelpLine {
+    pub title: &'static str,
+    pub keys: String,
+    pub text: &'static str,
 }
 
 /// On the matrix, where a user begins, these are all rows; elsewhere the rows of the place and its outer places,
 /// without keys that an inner one binds, then those of the screen's other tabs.
 pub fn help(context: Context, keymap: &Keymap) -> Vec<HelpLine> {
-    let tabs = |place: Context| place.outer() == Some(Context::Explore);
+    let is_tab = |place: Context| place.outer() == Some(Context::Explore);
     let inner: Vec<Context> = match context {
         Context::Matrix => Vec::new(),
         _ => context.around().collect(),
     };
-    let others = Context::all().filter(|place| !inner.contains(place));
-    let others = others.filter(|place| context == Context::Matrix || tabs(context) && tabs(*place));
+    let others = Context::all().filter(|place| {
+        let is_shown = context == Context::Matrix || is_tab(context) && is_tab(*place);
+        is_shown && !inner.contains(place)
+    });
     let mut lines = Vec::new();
     let mut taken: Vec<Key> = Vec::new();
     for place in inner.iter().copied().chain(others) {
-        let is_inner = inner.contains(&place);
-        let rows = keymap
-            .of(place)
-            .map(|row| row.without(if is_inner { &taken } else { &[] }));
-        let rows: Vec<Binding> = rows.filter(|row| !row.keys.is_empty()).collect();
-        if !rows.is_empty() {
-            lines.push(HelpLine::Place(place));
+        let mut rows: Vec<Binding> = keymap.of(place).cloned().collect();
+        if inner.contains(&place) {
+            for row in &mut rows {
+                row.keys.retain(|(key, _)| !taken.contains(key));
+            }
+            taken.extend(rows.iter().flat_map(|row| &row.keys).map(|(key, _)| *key));
         }
-        taken.extend(rows.iter().flat_map(|row| &row.keys).map(|(key, _)| *key));
-        lines.extend(
-            rows.iter()
-                .map(|row| HelpLine::Keys(row.labels(), row.help)),
-        );
+        rows.retain(|row| !row.keys.is_empty());
+        if !rows.is_empty() {
+            let (title, keys, text) = (place.title(), String::new(), "");
+            lines.push(HelpLine { title, keys, text });
+        }
+        lines.extend(rows.iter().map(|row| HelpLine {
+            title: "",
+            keys: row.labels(),
+            text: row.help,
+        }));
     }
     lines
 }
@@ -407,8 +390,7 @@ mod tests {
             change(Matrix, "x", "undo"),
             change(Matrix, "a", "increase"),
         ] {
-            let refused = Keymap::with(&[free, wrong]).expect_err("refused");
-            assert_eq!(refused.0, 1, "{wrong:?}");
+            assert!(Keymap::with(&[free, wrong]).is_err(), "{wrong:?}");
         }
     }
 }

@@ -41,25 +41,24 @@ pub fn draw(app: &App, grid: &Grid, buffer: &mut Buffer) {
     let shown = |layer| Layers::shown(layer, grid);
     let region = reading.description(app.chosen());
     let region = region.filter(|_| shown(app.layers.rectangle));
-    let mut dots = Dots::on(grid);
+    let (columns, lines) = grid.characters();
+    let mut dots = Dots {
+        grid,
+        canvas: DotCanvas::new(columns, lines),
+        by: [0.0; 2],
+        faint: false,
+    };
     if let Some(region) = &region {
         dots.rectangle(region);
     }
-    if let Some(source) = app
-        .shown()
-        .source
-        .as_ref()
-        .filter(|_| shown(app.layers.outline))
+    if let Some(source) = &app.shown().source
+        && shown(app.layers.outline)
     {
         source.draw(&mut dots);
     }
     let poses = app.pane().map(Page::poses).unwrap_or_default();
-    let poses = if shown(poses.shown) {
-        poses.sources
-    } else {
-        &[]
-    };
-    for (index, placed) in poses.iter().enumerate() {
+    let poses = poses.sources.iter().filter(|_| shown(poses.shown));
+    for (index, placed) in poses.enumerate() {
         (dots.by, dots.faint) = (placed.by, index > 0);
         placed.source.draw(&mut dots);
     }
@@ -91,21 +90,22 @@ pub fn draw(app: &App, grid: &Grid, buffer: &mut Buffer) {
         if is_number(&buffer[place]) {
             // The other digit stands beside it, and blanks beside both.
             for x in [place.x.saturating_sub(1), place.x + 1] {
-                let beside = buffer.cell_mut(Position::new(x, place.y));
-                if let Some(cell) = beside.filter(|cell| is_digit(cell)) {
+                if let Some(cell) = buffer.cell_mut((x, place.y))
+                    && is_digit(cell)
+                {
                     cell.set_char(' ');
                 }
             }
         }
-        buffer[place].reset();
-        let style = theme.style(Role::Focus);
-        buffer[place].set_char(letter).set_style(style);
+        let cell = &mut buffer[place];
+        cell.reset();
+        cell.set_char(letter).set_style(theme.style(Role::Focus));
     }
 }
 
 fn is_digit(cell: &Cell) -> bool {
-    let symbol = cell.symbol();
-    symbol.starts_with(|first: char| first.is_ascii_digit())
+    cell.symbol()
+        .starts_with(|first: char| first.is_ascii_digit())
 }
 
 struct Dots<'a> {
@@ -116,17 +116,7 @@ struct Dots<'a> {
     faint: bool,
 }
 
-impl<'a> Dots<'a> {
-    fn on(grid: &'a Grid) -> Self {
-        let (columns, lines) = grid.characters();
-        Self {
-            grid,
-            canvas: DotCanvas::new(columns, lines),
-            by: [0.0; 2],
-            faint: false,
-        }
-    }
-
+impl Dots<'_> {
     /// The dots of a taxel, across and down.
     fn scale(&self) -> DotPosition {
         let size = self.grid.size;

@@ -34,31 +34,21 @@ pub fn draw(app: &App, buffer: &mut Buffer, area: Rect) {
     };
     let heading = [(title, Role::Title), (which.as_str(), Role::Text)];
     write::line(buffer, area, theme, heading);
-    let (description, pitch_mm) = (
-        reading.description(app.chosen()),
-        app.shown().sensor.pitch_mm(),
-    );
+    let description = reading.description(app.chosen());
+    let pitch_mm = app.shown().sensor.pitch_mm();
     let below = write::below(area, 1);
     let columns = DESCRIPTORS.len().div_ceil(usize::from(below.height).max(1));
     // The columns are equally long: a single descriptor in the last one would look misplaced.
     let lines = DESCRIPTORS.len().div_ceil(columns);
     let width = area.width / narrow(columns).max(1);
     for (index, descriptor) in DESCRIPTORS.iter().enumerate() {
-        let x = area.x + narrow(index / lines) * width;
         let row = Rect {
-            x,
+            x: area.x + narrow(index / lines) * width,
             width,
             ..write::row(below, index % lines)
         };
-        let row = row.intersection(area);
-        draw_row(
-            theme,
-            descriptor,
-            description.as_ref(),
-            pitch_mm,
-            buffer,
-            row,
-        );
+        let (region, row) = (description.as_ref(), row.intersection(area));
+        draw_row(theme, descriptor, region, pitch_mm, buffer, row);
     }
 }
 

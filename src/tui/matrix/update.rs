@@ -71,11 +71,11 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) {
         Message::Help => app.open(Help::new(app.context())),
         Message::Cursor(arrow) => {
             let (dx, dy) = arrow.step();
-            let (column, row) = (
+            put_cursor(
+                app,
                 column.saturating_add_signed(dx),
                 row.saturating_add_signed(dy),
             );
-            put_cursor(app, column, row);
         }
         Message::PointAt(column, row) => put_cursor(app, column, row),
         Message::ToColumn(Endpoint::First) => put_cursor(app, 0, row),
@@ -112,8 +112,7 @@ fn empty(app: &mut App) {
 }
 
 fn compare_with_before(app: &mut App) {
-    let before = app.history.before().map(Reading::of);
-    match before {
+    match app.history.before().map(Reading::of) {
         Some(before) => compare_with(app, "the state before", &before.imprint),
         None => refuse(app, "nothing to compare with: this is the first state"),
     }
@@ -179,12 +178,11 @@ fn name_of_origin(app: &App) -> String {
             let size = |&parameter: &Parameter| figure.get(parameter).map(short);
             let sizes: Vec<String> = figure.kind().sizes().iter().filter_map(size).collect();
             let name = format!("{} {}", figure.kind().name(), sizes.join(" x "));
-            match figure
-                .get(Parameter::Thickness)
-                .filter(|_| figure.has_hole())
-            {
-                Some(thickness) => format!("{name} thickness {}", short(thickness)),
-                None => name,
+            match figure.get(Parameter::Thickness) {
+                Some(thickness) if figure.has_hole() => {
+                    format!("{name} thickness {}", short(thickness))
+                }
+                _ => name,
             }
         }
         Some(Source::Picture(picture)) => match picture.name() {
@@ -206,11 +204,10 @@ fn next_display(app: &mut App) {
         app.display = Display::Imprint;
         return refuse(app, format!("no coverage to show: {}", has_none(app)));
     }
+    let is_large = app.grid().is_some_and(|grid| grid.size.is_large());
     let (next, text) = match app.display {
         Display::Imprint => (Display::Shades, "coverage in shades"),
-        Display::Shades if app.grid().is_some_and(|grid| grid.size.is_large()) => {
-            (Display::Percent, "coverage in percent")
-        }
+        Display::Shades if is_large => (Display::Percent, "coverage in percent"),
         Display::Shades => (
             Display::Percent,
             "coverage in percent; one digit stands for tens: 5 is 50 to 59 %",
@@ -290,23 +287,22 @@ fn has_none(app: &App) -> String {
 /// by default depends on the size of taxels, so the switch inverts what is visible now.
 fn switch_layer(app: &mut App, layer: Layer) {
     let Some(grid) = app.grid() else { return };
-    let (missing, layers) = (has_none(app), app.layers);
-    let (name, missing, now) = match layer {
-        Layer::Outline => {
-            let missing = app.shown().source.is_none().then(|| format!(": {missing}"));
-            ("the outline", missing, layers.outline)
-        }
-        Layer::Rectangle => {
-            let missing = app.reading().regions.is_empty();
-            let missing = missing.then(|| ", once there is a region".to_owned());
-            ("rectangle, CG (G) and CD (D)", missing, layers.rectangle)
-        }
+    let no_source = app
+        .shown()
+        .source
+        .is_none()
+        .then(|| format!(": {}", has_none(app)));
+    let no_region = app.reading().regions.is_empty();
+    let (name, missing, shown) = match layer {
+        Layer::Outline => ("the outline", no_source, &mut app.layers.outline),
+        Layer::Rectangle => (
+            "rectangle, CG (G) and CD (D)",
+            no_region.then(|| ", once there is a region".to_owned()),
+            &mut app.layers.rectangle,
+        ),
     };
-    let show = !Layers::shown(now, &grid);
-    match layer {
-        Layer::Outline => app.layers.outline = Some(show),
-        Layer::Rectangle => app.layers.rectangle = Some(show),
-    }
+    let show = !Layers::shown(*shown, &grid);
+    *shown = Some(show);
     let text = if show {
         format!("with {name}{}", missing.unwrap_or_default())
     } else {
@@ -441,8 +437,7 @@ fn open_file(app: &mut App, name: String) {
 
 /// What an imprint file does not say, such as pitch and threshold, is taken from the sensor in use.
 fn of_imprint(app: &App, imprint: &Imprint) -> Result<Document, String> {
-    let sensor = app.history.present().sensor;
-    let sensor = sensor
+    let sensor = (app.history.present().sensor)
         .with(Parameter::Columns, imprint.columns().into())
         .and_then(|sensor| sensor.with(Parameter::Rows, imprint.rows().into()))
         .map_err(|error| error.labelled())?;

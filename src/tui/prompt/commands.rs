@@ -13,16 +13,15 @@
 //! Names, flags and ranges are those of the program's own command line, and so are the errors. Parameters of a figure
 //! that are not given have their defaults; those of the sensor keep their values.
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{CommandFactory, FromArgMatches, Parser};
 use taxel_core::figure::FigureKind;
 use taxel_core::frame::{FrameSize, MAX_FRAME_SIDE, Rule};
-use taxel_core::parameter::number;
 use taxel_core::pose::{Anchor, GivenRanges, PoseGrid, default_ranges};
 use taxel_core::source::Source;
 use taxel_files::formats::Name;
 use taxel_files::storage::ModelChoice;
 
+use crate::cli::arguments::flags::{one_of, parse_number};
 use crate::cli::arguments::parameters::{FigureFlags, RangeFlags, SensorFlags};
 use crate::tui::app::document::Document;
 use crate::tui::app::message::{LibraryRequest, Message, Purpose};
@@ -46,7 +45,7 @@ use crate::tui::recognise::RecogniseMessage;
 enum Colon {
     /// the threshold, in the sensor's unit
     AtLeast {
-        #[arg(value_parser = float, allow_hyphen_values = true)]
+        #[arg(value_parser = parse_number, allow_hyphen_values = true)]
         value: f64,
     },
     /// compare with a stored shape, or with the step before
@@ -59,12 +58,12 @@ enum Colon {
     Explore {
         #[command(flatten)]
         ranges: RangeFlags,
-        #[arg(long, value_parser = one_of::<Anchor>(Anchor::NAMES))]
+        #[arg(long, value_parser = one_of::<Anchor, _>(Anchor::NAMES))]
         anchor: Option<Anchor>,
     },
     /// place one of the seven figures
     Figure {
-        #[arg(value_parser = one_of::<FigureKind>(FigureKind::names()))]
+        #[arg(value_parser = one_of::<FigureKind, _>(FigureKind::names()))]
         kind: Option<FigureKind>,
         #[command(flatten)]
         flags: FigureFlags,
@@ -73,9 +72,9 @@ enum Colon {
     Load { name: Vec<String> },
     /// move the shape right and down, in cells
     Move {
-        #[arg(value_parser = float, allow_hyphen_values = true)]
+        #[arg(value_parser = parse_number, allow_hyphen_values = true)]
         dx: f64,
-        #[arg(value_parser = float, allow_hyphen_values = true)]
+        #[arg(value_parser = parse_number, allow_hyphen_values = true)]
         dy: f64,
     },
     /// open a shape or an imprint from a file
@@ -111,7 +110,7 @@ enum Colon {
     },
     /// turn the shape right; negative degrees: left
     Turn {
-        #[arg(value_parser = float, allow_hyphen_values = true)]
+        #[arg(value_parser = parse_number, allow_hyphen_values = true)]
         degrees: f64,
     },
     /// watch frames, live or recorded
@@ -131,23 +130,11 @@ enum Colon {
 const ON_LIVE: [&str; 5] = ["at-least", "size", "watch", "quit", "quit!"];
 const ONLY_ON_LIVE: [&str; 2] = ["at-least", "size"];
 
-fn float(text: &str) -> Result<f64, String> {
-    number::read(text).ok_or_else(|| number::complaint(text))
-}
-
 fn sides(text: &str) -> Result<FrameSize, String> {
     let sides = text.split_once(['x', '×']);
     let size = sides
         .and_then(|(columns, rows)| FrameSize::of_sides(columns.parse().ok(), rows.parse().ok()));
     size.ok_or_else(|| format!("expected columns and rows from 1 to {MAX_FRAME_SIDE}, as in 16x16"))
-}
-
-fn one_of<T>(names: impl IntoIterator<Item = &'static str>) -> impl TypedValueParser<Value = T>
-where
-    T: std::str::FromStr<Err: std::error::Error + Send + Sync> + Clone + Send + Sync + 'static,
-{
-    let names: Vec<&str> = names.into_iter().collect();
-    PossibleValuesParser::new(names).try_map(|name| name.parse())
 }
 
 /// The actions that are commands, too: those with a key row of their own. Others take arguments or only step.
@@ -160,30 +147,26 @@ fn actions(page: Context) -> impl Iterator<Item = (&'static Action, &'static str
     let rows = PLACES.iter().filter(move |(place, ..)| of(*place));
     let rows = rows.flat_map(|(.., rows)| rows.iter());
     rows.filter_map(|&(_, actions, _, help)| match actions {
+        [
+            Action {
+                message: Message::Command | Message::Accept | Message::Cancel,
+                ..
+            },
+        ] => None,
         [action] => Some((*action, help)),
         _ => None,
-    })
-    .filter(|(action, _)| {
-        let Action { message, .. } = action;
-        !matches!(
-            message,
-            Message::Command | Message::Accept | Message::Cancel
-        )
     })
 }
 
 /// The commands of a page. Those of other pages are hidden.
 fn command(page: Context) -> clap::Command {
-    let mut all = Colon::command();
-    let is_live = page == Context::Live;
-    all = all.mut_subcommands(|own| {
+    let mut all = Colon::command().mut_subcommands(|own| {
         let name = own.get_name();
-        let hidden = if is_live {
-            !ON_LIVE.contains(&name)
-        } else {
-            ONLY_ON_LIVE.contains(&name)
+        let is_shown = match page {
+            Context::Live => ON_LIVE.contains(&name),
+            _ => !ONLY_ON_LIVE.contains(&name),
         };
-        own.hide(hidden)
+        own.hide(!is_shown)
     });
     for (action, help) in actions(page) {
         if all.find_subcommand(action.name).is_none() {
@@ -242,10 +225,9 @@ impl Colon {
                 }
                 let source = explored(app).ok_or_else(|| app.nothing_to_explore())?;
                 let (sensor, anchor) = (document.sensor, anchor.unwrap_or_default());
-                let ranges = default_ranges(&source, &sensor, anchor, &ranges);
-                let ranges = ranges.map_err(|error| error.to_string())?;
-                let grid = PoseGrid::new(source, sensor, anchor, ranges);
-                let grid = grid.map_err(|error| error.to_string())?;
+                let grid = default_ranges(&source, &sensor, anchor, &ranges)
+                    .and_then(|ranges| PoseGrid::new(source, sensor, anchor, ranges))
+                    .map_err(|error| error.to_string())?;
                 Message::Explore(ExploreMessage::Start(Box::new(grid)))
             }
             Self::Figure { kind: None, flags } if flags.first().is_none() => Message::Figure,
@@ -269,8 +251,7 @@ impl Colon {
             }),
             Self::Restore { name } => {
                 let name = (!name.is_empty()).then(|| name_of(&name)).transpose()?;
-                let name = name.map(|name| name.to_string());
-                Message::Request(LibraryRequest::Restore(name))
+                Message::Request(LibraryRequest::Restore(name.map(|name| name.to_string())))
             }
             Self::Save { name } if name.is_empty() => Message::Save,
             Self::Save { .. } if app.reading().imprint.is_empty() => {
@@ -319,7 +300,7 @@ pub enum Names {
 }
 
 /// Returns the command that a line begins with, and the rest; None until a space follows its name.
-fn begun(line: &str) -> Option<(&str, &str)> {
+pub(super) fn begun(line: &str) -> Option<(&str, &str)> {
     let (name, rest) = line.trim_start().split_once(' ')?;
     Some((name, rest.trim_start()))
 }
@@ -371,10 +352,8 @@ pub fn complete(line: &str, names: &[String], page: Context) -> (String, Vec<Str
                 both.take_while(|(own, other)| own == other).count()
             };
             let common = others.iter().map(same).min().unwrap_or(0);
-            first
-                .chars()
-                .take(common.max(typed.chars().count()))
-                .collect()
+            let common = common.max(typed.chars().count());
+            first.chars().take(common).collect()
         }
     };
     let before = &line[..line.len() - typed.len()];
@@ -388,36 +367,33 @@ fn next_words(name: &str, before: &str, page: Context) -> Vec<String> {
     let Some(command) = all.find_subcommand(name) else {
         return Vec::new();
     };
-    let kinds = command
-        .get_positionals()
-        .next()
-        .map(clap::Arg::get_possible_values);
-    let kinds = kinds.filter(|kinds| !kinds.is_empty() && said.is_empty());
-    if let Some(kinds) = kinds {
-        return kinds
-            .iter()
-            .map(|kind| kind.get_name().to_owned())
-            .collect();
+    if let Some(first) = command.get_positionals().next().filter(|_| said.is_empty()) {
+        let values = first.get_possible_values();
+        if !values.is_empty() {
+            return values.iter().map(|own| own.get_name().to_owned()).collect();
+        }
     }
-    if said
-        .last()
-        .is_some_and(|last| last.starts_with("--") && !last.contains('='))
-    {
+    let awaits_value = |word: &&str| word.starts_with("--") && !word.contains('=');
+    if said.last().is_some_and(awaits_value) {
         return Vec::new();
     }
-    let kind = said
-        .first()
-        .and_then(|kind| kind.parse::<FigureKind>().ok());
-    let of_kind = |flag: &str| {
+    let kind: Option<FigureKind> = said.first().and_then(|kind| kind.parse().ok());
+    let is_offered = |flag: &&str| {
         let mut own = kind.into_iter().flat_map(FigureKind::parameters);
-        kind.is_none() || own.any(|parameter| parameter.flag() == flag)
+        let given = |word: &&str| {
+            word.split('=')
+                .next()
+                .and_then(|own| own.strip_prefix("--"))
+                == Some(flag)
+        };
+        (kind.is_none() || own.any(|parameter| parameter.flag() == *flag))
+            && !said.iter().any(given)
     };
     let flags = command.get_opts().filter_map(clap::Arg::get_long);
-    let flags = flags
-        .filter(|flag| of_kind(flag))
-        .map(|flag| format!("--{flag}"));
-    let is_given = |flag: &String| said.iter().any(|word| word.split('=').next() == Some(flag));
-    flags.filter(|flag| !is_given(flag)).collect()
+    flags
+        .filter(is_offered)
+        .map(|flag| format!("--{flag}"))
+        .collect()
 }
 
 /// A line that the prompt offers, with what may follow and what it does; without help, it is an earlier line.
@@ -453,19 +429,19 @@ pub fn offers(typed: &str, given: &[String], page: Context) -> Vec<Offer> {
     let typed = typed.trim_start();
     let mut offers: Vec<Offer> = Vec::new();
     for line in given.iter().rev() {
-        let fits = line.starts_with(typed) && line != typed && offers.len() < 5;
-        if fits && offers.iter().all(|offer| offer.line != *line) {
-            let (line, follows) = (line.clone(), String::new());
+        let is_new = line != typed && offers.iter().all(|offer| offer.line != *line);
+        if line.starts_with(typed) && is_new && offers.len() < 5 {
             offers.push(Offer {
-                line,
-                follows,
+                line: line.clone(),
+                follows: String::new(),
                 help: None,
             });
         }
     }
-    let (name, more) = begun(typed).map_or((typed, false), |(name, _)| (name, true));
+    let begun = begun(typed);
+    let name = begun.map_or(typed, |(name, _)| name);
     let mut named = listed(page);
-    named.retain(|own| own.line == name || !more && own.line.contains(name));
+    named.retain(|own| own.line == name || begun.is_none() && own.line.contains(name));
     named.sort_by_key(|own| !own.line.starts_with(name));
     offers.extend(named);
     offers

@@ -19,7 +19,7 @@ use crate::tui::files;
 use crate::tui::jobs::answer;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Context;
-use crate::tui::prompt::commands::{Names, complete, offers, read, wants_names};
+use crate::tui::prompt::commands::{Names, begun, complete, offers, read, wants_names};
 use crate::tui::shapes::library::sentence;
 use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
@@ -140,18 +140,16 @@ impl CommandDialog {
         let (line, candidates) = complete(self.field.text(), names, self.page);
         self.at = 0;
         self.field.set(line);
-        self.candidates = if candidates.len() > 1 {
-            candidates
-        } else {
-            Vec::new()
-        };
+        let is_decided = candidates.len() < 2;
+        self.candidates = if is_decided { Vec::new() } else { candidates };
     }
 
     /// Completes the last word with names of the disk, unless something else was typed when they arrive.
     fn complete_from_disk(&mut self, app: &mut App, wanted: Names) {
         self.asked = Some(self.field.text().to_owned());
-        let line = self.field.text().trim_start().split_once(' ');
-        let last_word = line.map_or("", |(_, rest)| rest.trim_start()).to_owned();
+        let last_word = begun(self.field.text())
+            .map_or("", |(_, rest)| rest)
+            .to_owned();
         app.jobs.read("Listing the names", move |library| {
             let names = names(library, wanted, &last_word);
             answer(|app| match names {
@@ -219,9 +217,9 @@ fn names(library: &Library, wanted: Names, last_word: &str) -> Result<Vec<String
         },
         // Shipped shapes cannot be deleted or replaced.
         Names::Shapes { own } => {
-            let entries = library.list().map_err(sentence)?.into_iter();
-            let offered = entries.filter(|entry| !own || entry.origin == ShapeOrigin::Own);
-            Ok(offered.map(|entry| entry.name).collect())
+            let mut entries = library.list().map_err(sentence)?;
+            entries.retain(|entry| !own || entry.origin == ShapeOrigin::Own);
+            Ok(entries.into_iter().map(|entry| entry.name).collect())
         }
     }
 }

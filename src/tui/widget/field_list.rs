@@ -1,8 +1,7 @@
-//! A list of text fields for parameters, one of which may have the focus: the state of every form.
+//! A list of text fields for parameters, one of which may have the focus: what all forms share.
 //!
-//! A form has its own type of [`FormField`], which says what its text may be: a number, a range. Above or below the
-//! fields there may be one more row that can have the focus, such as the kind of a figure; the form itself handles its
-//! keys.
+//! A form says by its `check` what the text of a field may be: a number, a range. Above or below the fields there may be
+//! a row of choices, such as the kind of a figure, that can have the focus, too; the form itself handles its keys.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -15,10 +14,9 @@ use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, around, narrow};
 
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FormError {
-    pub brief: String,
-    pub full: String,
+pub(crate) struct FormError {
+    pub(crate) brief: String,
+    pub(crate) full: String,
 }
 
 impl From<ParameterError> for FormError {
@@ -30,64 +28,60 @@ impl From<ParameterError> for FormError {
     }
 }
 
-pub trait FormField {
-    fn parameter(&self) -> Parameter;
+pub(crate) struct Field {
+    pub(crate) parameter: Parameter,
+    pub(crate) input: TextField,
+    /// What the form wrote into it; None for a text of the user's own.
+    pub(crate) proposed: Option<String>,
+    /// The value of the proposed text, which may have fewer decimals: those of a shape that was moved or loaded.
+    pub(crate) initial: Option<f64>,
+}
 
-    fn input(&self) -> &TextField;
+impl Field {
+    pub(crate) fn text(&self) -> &str {
+        self.input.text()
+    }
 
-    fn input_mut(&mut self) -> &mut TextField;
-
-    fn error(&self, sensor: &Sensor) -> Option<FormError>;
-
-    fn text(&self) -> &str {
-        self.input().text()
+    pub(crate) fn is_proposed(&self) -> bool {
+        self.proposed.as_deref() == Some(self.text())
     }
 }
 
-/// One of them has the focus, or none if another row of the form has it.
-#[derive(Clone, Debug)]
-pub struct FieldList<F> {
-    pub(crate) fields: Vec<F>,
-    other_row: bool,
+pub(crate) struct FieldList {
+    pub(crate) fields: Vec<Field>,
+    pub(crate) has_choice: bool,
+    /// None if the row of choices has it.
     pub(crate) focus: Option<usize>,
     pub(crate) sensor: Sensor,
+    pub(crate) check: fn(&Field, &Sensor) -> Result<(), FormError>,
 }
 
-impl<F: FormField> FieldList<F> {
-    pub fn new(fields: Vec<F>, other_row: bool, sensor: Sensor) -> Self {
-        Self {
-            fields,
-            other_row,
-            focus: None,
-            sensor,
-        }
-    }
-
-    pub fn set_focus(&mut self, focus: Option<usize>) {
+impl FieldList {
+    pub(crate) fn set_focus(&mut self, focus: Option<usize>) {
         self.focus = focus.map(|index| index.min(self.fields.len().saturating_sub(1)));
         if let Some(field) = self.focused() {
-            field.input_mut().enter();
+            field.input.enter();
         }
     }
 
-    /// Moves the focus by `by` rows; the first row follows the last. The other row lies between these two.
-    pub fn move_focus(&mut self, by: i8) {
-        let other = usize::from(self.other_row);
+    /// Moves the focus by `by` rows; the first row follows the last. The choices lie between these two.
+    pub(crate) fn move_focus(&mut self, by: i8) {
+        let other = usize::from(self.has_choice);
         let now = self.focus.map_or(0, |index| index + other);
         let next = around(now, by, self.fields.len() + other);
         self.set_focus(next.checked_sub(other));
     }
 
-    pub fn focused(&mut self) -> Option<&mut F> {
+    pub(crate) fn focused(&mut self) -> Option<&mut Field> {
         self.fields.get_mut(self.focus?)
     }
 
-    pub fn error(&self) -> Option<(usize, FormError)> {
+    pub(crate) fn error(&self) -> Option<(usize, FormError)> {
         let mut fields = self.fields.iter().enumerate();
-        fields.find_map(|(index, field)| Some((index, field.error(&self.sensor)?)))
+        fields.find_map(|(index, field)| Some((index, (self.check)(field, &self.sensor).err()?)))
     }
 
-    pub fn take(&mut self, message: &Message) {
+    pub(crate) fn take(&mut self, message: &Message) {
         match message {
             Message::Field(by) => self.move_focus(*by),
             Message::ToField(field) => self.set_focus(*field),
@@ -95,16 +89,36 @@ impl<F: FormField> FieldList<F> {
             Message::Choose(Arrow::Down) => self.move_focus(1),
             message => {
                 if let Some(field) = self.focused() {
-                    field.input_mut().take(message);
+                    field.input.take(message);
                 }
             }
         }
     }
 }
 
+/// Draws the row of choices: its label, the chosen one between arrows, and a remark.
+pub(crate) fn draw_choice(
+    theme: &Theme,
+    (label, chosen): (&str, &str),
+    focused: bool,
+    remark: (&str, Role),
+    buffer: &mut Buffer,
+    row: Rect,
+) {
+    let role = if focused { Role::Focus } else { Role::Text };
+    let pieces = [
+        (label, Role::Text),
+        ("< ", Role::Quiet),
+        (chosen, role),
+        (" > ", Role::Quiet),
+        remark,
+    ];
+    write::line(buffer, row, theme, pieces);
+}
+
 /// The places of the rows of a form, of which those scroll that do not fit.
-#[derive(Clone, Copy, Debug)]
-pub struct FieldRows {
+#[derive(Clone, Copy)]
+pub(crate) struct FieldRows {
     area: Rect,
     /// The number of lines of a row: two if there is room, otherwise one.
     spacing: u16,
@@ -115,7 +129,7 @@ pub struct FieldRows {
 impl FieldRows {
     /// Computes the places of rows in an area, so that the one with the focus is visible. Above them there is room for
     /// a number of `fixed` rows, which don't scroll; the focus is None if one of these has it.
-    pub fn of(area: Rect, fixed: u16, rows: usize, focus: Option<usize>) -> Self {
+    pub(crate) fn of(area: Rect, fixed: u16, rows: usize, focus: Option<usize>) -> Self {
         let two_lines = usize::from(area.height / 2) >= usize::from(fixed) + rows;
         let spacing = if two_lines { 2 } else { 1 };
         let area = write::below(area, fixed * spacing);
@@ -129,35 +143,54 @@ impl FieldRows {
         }
     }
 
-    /// Draws the fields, with labels and inputs of these widths, and returns the position of the cursor.
-    pub fn draw<F: FormField>(
+    /// Draws the fields, with labels and inputs of these widths: what is allowed beside a field, and below it what is
+    /// wrong with it or a remark; on a single line, the error or both. Returns the position of the cursor.
+    pub(crate) fn draw(
         &self,
         theme: &Theme,
-        list: &FieldList<F>,
+        list: &FieldList,
         widths: (usize, usize),
-        remark: impl Fn(&F) -> Option<&'static str>,
+        remark: impl Fn(&Field) -> Option<&'static str>,
         buffer: &mut Buffer,
     ) -> Option<Position> {
         let mut cursor = None;
-        for (index, place) in self.visible() {
-            if let Some(field) = list.fields.get(index) {
-                let focused = list.focus == Some(index);
-                let at = draw_field(theme, field, focused, widths, buffer, place);
-                cursor = cursor.or(focused.then_some(at.0));
-                draw_remarks(
-                    theme,
-                    field,
-                    &list.sensor,
-                    remark(field),
-                    buffer,
-                    (place, at.1),
-                );
-            }
+        for ((_, row), (index, field)) in self
+            .visible()
+            .zip(list.fields.iter().enumerate().skip(self.first))
+        {
+            let focused = list.focus == Some(index);
+            let (at, after) = draw_field(theme, field, focused, widths, buffer, row);
+            cursor = cursor.or(focused.then_some(at));
+            let bare = list.sensor.range(field.parameter).to_string();
+            let allowed = field.parameter.row().unit.after(&bare);
+            let second = match (list.check)(field, &list.sensor) {
+                Err(error) => Some((format!("! {}", error.brief), Role::Error)),
+                Ok(()) => remark(field).map(|remark| (remark.to_owned(), Role::Quiet)),
+            };
+            let under = write::right_of(write::row(row, 1), row.x.saturating_add(2));
+            // Beside the descriptors, what is allowed has no room beside the field.
+            let beside = match row.width {
+                ..40 if under.height > 0 => under,
+                _ => write::right_of(row, after),
+            };
+            let (place, text, role) = match second {
+                None => (beside, allowed, Role::Quiet),
+                Some((text, role)) if under.height > 0 => {
+                    if beside != under {
+                        write::text(buffer, beside, theme, &allowed, Role::Quiet);
+                    }
+                    (under, text, role)
+                }
+                Some((error, Role::Error)) => (beside, error, Role::Error),
+                // Without the unit, both have room on a screen of 80 columns.
+                Some((remark, role)) => (beside, format!("{bare}; {remark}"), role),
+            };
+            write::text(buffer, place, theme, &text, role);
         }
         cursor
     }
 
-    pub fn visible(&self) -> impl Iterator<Item = (usize, Rect)> + use<> {
+    pub(crate) fn visible(&self) -> impl Iterator<Item = (usize, Rect)> + use<> {
         let rows = *self;
         (0..rows.visible).map(move |index| {
             let below = write::below(rows.area, narrow(index) * rows.spacing);
@@ -166,13 +199,13 @@ impl FieldRows {
         })
     }
 
-    pub fn at(&self, y: u16) -> Option<usize> {
+    pub(crate) fn at(&self, y: u16) -> Option<usize> {
         let mut rows = self.visible();
         let row = rows.find(|(_, lines)| (lines.top()..lines.bottom()).contains(&y));
         row.map(|(index, _)| index)
     }
 
-    pub fn rest(&self, pane: Rect) -> Rect {
+    pub(crate) fn rest(&self, pane: Rect) -> Rect {
         let end = self.area.y + narrow(self.visible) * self.spacing;
         write::below(pane, end - pane.y)
     }
@@ -180,9 +213,9 @@ impl FieldRows {
 
 /// Draws label and text. A field with the focus is as wide as its text. Returns the position of the cursor, and the
 /// column after the field.
-fn draw_field<F: FormField>(
+fn draw_field(
     theme: &Theme,
-    field: &F,
+    field: &Field,
     focused: bool,
     (label, least): (usize, usize),
     buffer: &mut Buffer,
@@ -190,62 +223,13 @@ fn draw_field<F: FormField>(
 ) -> (Position, u16) {
     let most = usize::from(row.width).saturating_sub(label).max(least);
     let (role, at, width) = match (focused, write::width(field.text()) + 1) {
-        (true, needed) => (
-            Role::Focus,
-            field.input().cursor(),
-            needed.clamp(least, most),
-        ),
+        (true, needed) => (Role::Focus, field.input.cursor(), needed.clamp(least, most)),
         // Without the focus it is shown from its start.
         (false, _) => (Role::Text, 0, least),
     };
     let (shown, cursor) = write::field_columns(field.text(), at, width, theme);
-    let name = format!("{:label$}", field.parameter().row().label);
+    let name = format!("{:label$}", field.parameter.row().label);
     write::line(buffer, row, theme, [(&*name, Role::Text), (&*shown, role)]);
     let column = |after: usize| row.x.saturating_add(narrow(label + after));
     (Position::new(column(cursor), row.y), column(width + 1))
-}
-
-/// Draws what is allowed beside a field, and below it what is wrong with it or a remark; on a single line, the error
-/// or both.
-fn draw_remarks<F: FormField>(
-    theme: &Theme,
-    field: &F,
-    sensor: &Sensor,
-    remark: Option<&str>,
-    buffer: &mut Buffer,
-    (row, after): (Rect, u16),
-) {
-    let bare = sensor.range(field.parameter()).to_string();
-    let range = field.parameter().row().unit.after(&bare);
-    let error = field
-        .error(sensor)
-        .map(|error| format!("! {}", error.brief));
-    let second = match (&error, remark) {
-        (Some(error), _) => Some((error.as_str(), Role::Error)),
-        (None, remark) => remark.map(|remark| (remark, Role::Quiet)),
-    };
-    let under = write::right_of(write::row(row, 1), row.x.saturating_add(2));
-    // Beside the descriptors, what is allowed has no room beside the field.
-    let beside = match row.width {
-        ..40 if under.height > 0 => under,
-        _ => write::right_of(row, after),
-    };
-    match second {
-        Some((text, role)) if under.height > 0 => {
-            if beside != under {
-                write::text(buffer, beside, theme, &range, Role::Quiet);
-            }
-            write::text(buffer, under, theme, text, role);
-        }
-        Some((error, Role::Error)) => {
-            write::text(buffer, beside, theme, error, Role::Error);
-        }
-        // Without the unit, both have room on a screen of 80 columns.
-        Some((remark, role)) => {
-            write::text(buffer, beside, theme, &format!("{bare}; {remark}"), role);
-        }
-        None => {
-            write::text(buffer, beside, theme, &range, Role::Quiet);
-        }
-    }
 }
