@@ -61,12 +61,7 @@ impl<'a> HeatMap<'a> {
             reading,
             layer: live.layer,
             range: live.ends(),
-            grid: grid(
-                area,
-                &reading.values,
-                live.numbers,
-                looked_at(live, reading),
-            ),
+            grid: grid(area, &reading.values, live.numbers, live.looked_at(reading)),
         }
     }
 
@@ -78,11 +73,8 @@ impl<'a> HeatMap<'a> {
             (_, CellSize::Half) => "near imprint",
             _ => "imprint edge",
         };
-        let any = self
-            .reading
-            .imprint
-            .is_some_and(|imprint| !imprint.is_empty());
-        any.then(|| format!("{} {marked}", edge(self.theme)))
+        let imprint = self.reading.imprint.filter(|imprint| !imprint.is_empty());
+        imprint.map(|_| format!("{} {marked}", edge(self.theme)))
     }
 
     /// Returns the visible columns and rows, counted from 0; None if all are visible.
@@ -100,9 +92,7 @@ impl<'a> HeatMap<'a> {
         match self.grid.size {
             CellSize::Number => self.draw_numbers(buffer),
             CellSize::Half => self.grid.draw(buffer, |column, row| self.half(column, row)),
-            _ => self
-                .grid
-                .draw(buffer, |column, row| self.square(column, row)),
+            _ => (self.grid).draw(buffer, |column, row| self.square(column, row)),
         }
     }
 
@@ -117,42 +107,28 @@ impl<'a> HeatMap<'a> {
         value::character(share, self.theme.ascii)
     }
 
-    /// Returns the imprint if it is what is shown.
-    fn shown_imprint(&self) -> Option<&Imprint> {
-        let imprint = self.reading.imprint.as_ref();
-        imprint.filter(|_| self.layer == HeatLayer::Imprint)
-    }
-
     /// A taxel of several columns. A low one is a single character, so that an area without touch looks less dense than
     /// a touch.
     fn square(&self, column: u8, row: u8) -> Look {
         let share = self.share(column, row);
-        let (sign, style, is_low) = match self.shown_imprint() {
-            Some(imprint) => {
-                let role = match (imprint.get(column, row), self.reading.main.get(column, row)) {
-                    (true, true) => Role::Chosen,
-                    (true, false) => Role::Active,
-                    (false, _) => Role::Inactive,
-                };
-                let [sign, _] = self.theme.taxel(role);
-                let sign = if share.is_nan() { ' ' } else { sign };
-                (sign, self.theme.style(role), role == Role::Inactive)
-            }
-            None => {
-                let style = style(self.theme, share);
-                (self.shade(share), style, share <= 0.0)
-            }
-        };
-        let fill = if is_low { ' ' } else { sign };
         let imprint = self.reading.imprint.as_ref();
-        let is_marked = self.layer != HeatLayer::Imprint
-            && imprint.is_some_and(|imprint| is_edge(imprint, column, row));
-        let second = if is_marked { edge(self.theme) } else { fill };
-        Look {
-            signs: [sign, second],
-            fill,
-            style,
+        if let Some(imprint) = imprint.filter(|_| self.layer == HeatLayer::Imprint) {
+            let role = match (imprint.get(column, row), self.reading.main.get(column, row)) {
+                (true, true) => Role::Chosen,
+                (true, false) => Role::Active,
+                (false, _) => Role::Inactive,
+            };
+            let [sign, fill] = self.theme.taxel(role);
+            let signs = [if share.is_nan() { ' ' } else { sign }, fill];
+            let style = self.theme.style(role);
+            return Look { signs, fill, style };
         }
+        let sign = self.shade(share);
+        let fill = if share <= 0.0 { ' ' } else { sign };
+        let is_marked = imprint.is_some_and(|imprint| is_edge(imprint, column, row));
+        let second = if is_marked { edge(self.theme) } else { fill };
+        let (signs, style) = ([sign, second], style(self.theme, share));
+        Look { signs, fill, style }
     }
 
     /// Two taxels in one character: one above the other with colours; without colours only the larger one, so that no
@@ -165,13 +141,12 @@ impl<'a> HeatMap<'a> {
         };
         let shade = self.shade(larger);
         let style = style(self.theme, larger);
-        let (sign, style) = if let Some(imprint) = self.shown_imprint() {
+        let imprint = self.reading.imprint.as_ref();
+        let shown = imprint.filter(|_| self.layer == HeatLayer::Imprint);
+        let (sign, style) = if let Some(imprint) = shown {
             let [upper, lower] = [row, row + 1].map(|row| imprint.get(column, row));
-            let role = if upper || lower {
-                Role::Chosen
-            } else {
-                Role::Inactive
-            };
+            let any = upper || lower;
+            let role = if any { Role::Chosen } else { Role::Inactive };
             (self.theme.half(upper, lower), self.theme.style(role))
         } else if self.is_beside(column, row) {
             (edge(self.theme), style)
@@ -226,7 +201,7 @@ impl<'a> HeatMap<'a> {
 
     /// Returns the nearest hidden taxel in a direction; None if there is none.
     pub(super) fn beyond(&self, towards: Arrow, live: &Live) -> Option<(u8, u8)> {
-        let (column, row) = looked_at(live, self.reading);
+        let (column, row) = live.looked_at(self.reading);
         let (columns, rows) = (self.grid.columns, self.grid.rows);
         let before = |axis: Window| axis.hidden().0.then(|| axis.first - 1);
         let after = |axis: Window| axis.hidden().1.then_some(axis.first + axis.count);
@@ -239,14 +214,16 @@ impl<'a> HeatMap<'a> {
     }
 }
 
-/// Returns the taxel that must be visible: the chosen one, or the middle of the main region, or the largest value.
-fn looked_at(live: &Live, reading: &LiveReading) -> (u8, u8) {
-    let middle = reading.main.bounds().map(|bounds| {
-        let of = |side: std::ops::Range<u8>| side.start.midpoint(side.end);
-        (of(bounds.columns()), of(bounds.rows()))
-    });
-    let largest = reading.shown_max.map(|(_, at)| at);
-    live.looked_at.or(middle).or(largest).unwrap_or_default()
+impl Live {
+    /// Returns the taxel that must be visible: the chosen one, or the middle of the main region, or the largest value.
+    fn looked_at(&self, reading: &LiveReading) -> (u8, u8) {
+        let middle = reading.main.bounds().map(|bounds| {
+            let of = |side: std::ops::Range<u8>| side.start.midpoint(side.end);
+            (of(bounds.columns()), of(bounds.rows()))
+        });
+        let largest = reading.shown_max.map(|(_, at)| at);
+        self.looked_at.or(middle).or(largest).unwrap_or_default()
+    }
 }
 
 fn has_halves(theme: &Theme) -> bool {
@@ -290,14 +267,9 @@ pub(super) fn cells(values: &Matrix<f64>) -> usize {
     values.filter(|value| !value.is_nan()).count()
 }
 
-pub(super) fn grid(
-    area: Rect,
-    values: &Matrix<f64>,
-    numbers: bool,
-    (column, row): (u8, u8),
-) -> Grid {
+pub(super) fn grid(area: Rect, values: &Matrix<f64>, numbers: bool, seen: (u8, u8)) -> Grid {
     let sides = (values.columns(), values.rows());
-    let seen = Bounds::of_taxel(column, row);
+    let seen = Bounds::of_taxel(seen.0, seen.1);
     if numbers {
         return Grid::new(beside_rulers(area), CellSize::Number, sides, seen);
     }

@@ -12,6 +12,7 @@ use crate::tui::app::change::inform;
 use crate::tui::app::state::App;
 use crate::tui::jobs::{Slot, answer};
 use crate::tui::live::update;
+use crate::tui::live::view::Lines;
 use crate::tui::models;
 use crate::tui::widget::theme::Theme;
 
@@ -106,7 +107,7 @@ impl ShapeNames {
 
     /// Returns the lines about the shape, the nearest imprint, and the model with its noise; none if imprints are not
     /// named. There is no name where nothing is active.
-    pub fn lines(&self, any: bool, theme: &Theme) -> Vec<(&'static str, String)> {
+    pub fn lines(&self, any: bool, theme: &Theme) -> Lines {
         let Some(choice) = &self.choice else {
             return Vec::new();
         };

@@ -36,6 +36,9 @@ use crate::tui::widget::write;
 
 const LABEL: usize = 11;
 
+/// Lines of the panel, each with its label.
+pub(super) type Lines = Vec<(&'static str, String)>;
+
 const SHOWN: [&str; 5] = ["na", "nae", "p", "f", "cg"];
 
 /// The most marks that are listed, the newest ones.
@@ -84,13 +87,8 @@ impl Page for Live {
         let map = self
             .shown_reading()
             .map(|own| HeatMap::of(self, own, theme, panes.map));
-        draw_title(
-            self,
-            map.as_ref().and_then(HeatMap::window),
-            theme,
-            buffer,
-            panes.title,
-        );
+        let window = map.as_ref().and_then(HeatMap::window);
+        draw_title(self, window, theme, buffer, panes.title);
         if let Some(map) = &map {
             map.draw(buffer);
         }
@@ -168,12 +166,7 @@ pub(super) fn beyond(live: &Live, theme: &Theme, area: Rect, towards: Arrow) -> 
 
 /// Returns all lines of the panel, each with its label, the most important ones first. A low screen cuts them off at
 /// the bottom, so lines about the touch come before lines about the source. `marks` is the legend of the mark on taxels.
-fn lines(
-    live: &Live,
-    theme: &Theme,
-    keymap: &Keymap,
-    marks: Option<String>,
-) -> Vec<(&'static str, String)> {
+fn lines(live: &Live, theme: &Theme, keymap: &Keymap, marks: Option<String>) -> Lines {
     let mut lines = Vec::new();
     if let Some(reading) = &live.reading {
         let shown = SHOWN.iter().filter_map(|key| Descriptor::from_key(key));
@@ -197,11 +190,8 @@ fn lines(
     ));
     let gaps = live.status.gaps;
     if gaps.count > 0 {
-        let missing = value::decimal(gaps.missing, 1);
-        lines.push((
-            "gaps",
-            format!("{}, {missing} s missing", grouped(gaps.count)),
-        ));
+        let (count, missing) = (grouped(gaps.count), value::decimal(gaps.missing, 1));
+        lines.push(("gaps", format!("{count}, {missing} s missing")));
     }
     lines.extend(marked(live).map(|text| ("marked", text)));
     lines.extend(recording(live).map(|text| ("recording", text)));
@@ -232,12 +222,7 @@ fn described(reading: &LiveReading, descriptor: &Descriptor, theme: &Theme) -> S
     text.unwrap_or_else(|| theme.none().to_owned())
 }
 
-fn of_values(
-    live: &Live,
-    reading: &LiveReading,
-    theme: &Theme,
-    marks: Option<String>,
-) -> Vec<(&'static str, String)> {
+fn of_values(live: &Live, reading: &LiveReading, theme: &Theme, marks: Option<String>) -> Lines {
     let unit = live.unit();
     let ends = live.ends();
     // Small sums of large values are rounding errors, not measured values.
@@ -326,16 +311,15 @@ fn dropped(live: &Live) -> String {
     let counts = &live.status.counts;
     let mut text = grouped(counts.dropped);
     if let Some(sample) = counts.sample.as_ref().filter(|_| counts.dropped > 0) {
-        text += &format!(", the last: {sample}");
-        if let Some(reason) = &counts.reason {
-            text += &format!(" ({reason})");
-        }
+        let reason = counts.reason.as_ref();
+        let reason = reason.map_or(String::new(), |reason| format!(" ({reason})"));
+        text += &format!(", the last: {sample}{reason}");
     }
     text
 }
 
 /// Draws the lines from the top; lines that do not fit into the area are left out.
-fn draw_lines(lines: &[(&'static str, String)], theme: &Theme, buffer: &mut Buffer, area: Rect) {
+fn draw_lines(lines: &Lines, theme: &Theme, buffer: &mut Buffer, area: Rect) {
     let mut shown = lines.len();
     if shown > area.height.into() {
         shown = area.height.saturating_sub(1).into();

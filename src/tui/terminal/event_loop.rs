@@ -288,12 +288,8 @@ fn ended_by(signal: i32) -> u8 {
 fn size(settings: &TerminalSettings) -> (u16, u16) {
     let reported = || window_size().map_or((0, 0), |size| (size.columns, size.rows));
     let (columns, rows) = settings.size.unwrap_or_else(reported);
-    let side = |known: u16, fallback: u16, most: u16| match known {
-        0 => fallback.min(most),
-        known => known.min(most),
-    };
-    (
-        side(columns, settings.fallback.0, LARGEST.0),
-        side(rows, settings.fallback.1, LARGEST.1),
-    )
+    let (width, height) = settings.fallback;
+    let side = |known: u16, fallback: u16| if known == 0 { fallback } else { known };
+    let (columns, rows) = (side(columns, width), side(rows, height));
+    (columns.min(LARGEST.0), rows.min(LARGEST.1))
 }

@@ -227,9 +227,16 @@ fn draw_field(
         // Without the focus it is shown from its start.
         (false, _) => (Role::Text, 0, least),
     };
-    let (shown, cursor) = write::field_columns(field.text(), at, width, theme);
+    let (shown, cursor) = write::field_text(field.text(), at, width, theme);
+    let shown = write::fitted(&shown, width, theme);
+    let fill = " ".repeat(width - write::width(&shown));
     let name = format!("{:label$}", field.parameter.row().label);
-    write::line(buffer, row, theme, [(&*name, Role::Text), (&*shown, role)]);
+    write::line(
+        buffer,
+        row,
+        theme,
+        [(&*name, Role::Text), (&*shown, role), (&*fill, role)],
+    );
     let column = |after: usize| row.x.saturating_add(narrow(label + after));
     (Position::new(column(cursor), row.y), column(width + 1))
 }

@@ -20,8 +20,6 @@ use crate::tui::widget::write::{self, narrow};
 const APART: u16 = 10;
 const LINES: u16 = 2;
 
-const LEGEND: &str = "· 1   o 2–9   O 10–99   @ 100+";
-
 #[derive(Clone, Debug)]
 pub struct PlotField {
     pub field: Rect,
@@ -184,22 +182,22 @@ impl PlotField {
             let (column, row) = (at.x - self.field.x, at.y - self.field.y);
             counts[usize::from(row) * width + usize::from(column)] += 1;
         }
+        let (one, to) = if theme.ascii {
+            ('.', '-')
+        } else {
+            ('·', '–')
+        };
         for (at, count) in self.field.positions().zip(counts) {
             let mark = match count {
                 0 => continue,
-                1 if theme.ascii => '.',
-                1 => '·',
+                1 => one,
                 2..10 => 'o',
                 10..100 => 'O',
                 _ => '@',
             };
             write::sign(buffer, at.into(), mark, style);
         }
-        let legend = if theme.ascii {
-            LEGEND.replace('·', ".").replace('–', "-")
-        } else {
-            LEGEND.to_owned()
-        };
+        let legend = format!("{one} 1   o 2{to}9   O 10{to}99   @ 100+");
         let width = narrow(write::width(&legend));
         // The label of the axis on the same line is only a word.
         if width < self.field.width {
@@ -258,9 +256,7 @@ impl DotCanvas {
         let (x, y) = (x as usize, y as usize);
         let (across, down) = (usize::from(DOTS.0), usize::from(DOTS.1));
         let index = y / down * usize::from(self.columns) + x / across;
-        if let Some(character) = self.characters.get_mut(index) {
-            *character |= BITS[y % down][x % across];
-        }
+        self.characters[index] |= BITS[y % down][x % across];
     }
 
     pub fn line(&mut self, from: DotPosition, to: DotPosition) {

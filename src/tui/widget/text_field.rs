@@ -14,8 +14,6 @@ pub struct TextField {
     longest: usize,
     /// Whether the field was just entered, so that the next typed character replaces the text.
     pub(crate) fresh: bool,
-    /// The number of pasted characters that the last message left out, because there was no room for them.
-    left_out: usize,
 }
 
 impl TextField {
@@ -25,7 +23,6 @@ impl TextField {
             input: Input::new(text.into()),
             longest,
             fresh: false,
-            left_out: 0,
         }
     }
 
@@ -36,11 +33,6 @@ impl TextField {
 
     pub fn text(&self) -> &str {
         self.input.value()
-    }
-
-    /// Returns the number of pasted characters that the last message left out, because there was no room for them.
-    pub fn left_out(&self) -> usize {
-        self.left_out
     }
 
     pub fn cursor(&self) -> usize {
@@ -60,7 +52,6 @@ impl TextField {
         if self.fresh && replaces {
             self.set("");
         }
-        self.left_out = 0;
         let taken = self.does(message);
         self.fresh &= !taken;
         taken
@@ -78,10 +69,9 @@ impl TextField {
                 // has no other place for them.
                 let words = text.split(['\r', '\n', '\t']).map(str::trim);
                 let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
-                let text = words.join(" ");
-                let text = text.chars().filter(|character| !character.is_control());
-                let left_out = text.filter(|&character| !self.insert(character));
-                self.left_out = left_out.count();
+                for character in words.join(" ").chars() {
+                    self.insert(character);
+                }
                 return true;
             }
             Message::Choose(Arrow::Left) => InputRequest::GoToPrevChar,
@@ -97,12 +87,10 @@ impl TextField {
         true
     }
 
-    fn insert(&mut self, character: char) -> bool {
-        let fits = !character.is_control() && self.text().chars().count() < self.longest;
-        if fits {
+    fn insert(&mut self, character: char) {
+        if !character.is_control() && self.text().chars().count() < self.longest {
             self.edit(InputRequest::InsertChar(character));
         }
-        fits
     }
 
     fn edit(&mut self, request: InputRequest) {

@@ -265,11 +265,21 @@ impl Theme {
         value.map_or_else(|| self.none().to_owned(), |value| fitting(value, width))
     }
 
+    /// Returns a text in characters of the terminal; in ASCII, "17°" becomes "17 deg". A character without a spelling
+    /// becomes a question mark, so that the columns of the screen stay in place.
     pub fn text<'a>(&self, text: &'a str) -> Cow<'a, str> {
         if !self.ascii || text.is_ascii() {
             return Cow::Borrowed(text);
         }
-        Cow::Owned(to_ascii(text))
+        let mut plain = String::with_capacity(text.len());
+        for character in text.chars() {
+            match spelling(character) {
+                Some(spelling) => plain.push_str(spelling),
+                None if character.is_ascii() => plain.push(character),
+                None => plain.push('?'),
+            }
+        }
+        Cow::Owned(plain)
     }
 }
 
@@ -287,18 +297,4 @@ pub(crate) fn spelling(sign: char) -> Option<&'static str> {
         '→' => "->",
         _ => return None,
     })
-}
-
-/// Converts a text to ASCII: "17°" becomes "17 deg". A character without a spelling becomes a question mark, so that
-/// the columns of the screen stay in place.
-fn to_ascii(text: &str) -> String {
-    let mut plain = String::with_capacity(text.len());
-    for character in text.chars() {
-        match spelling(character) {
-            Some(spelling) => plain.push_str(spelling),
-            None if character.is_ascii() => plain.push(character),
-            None => plain.push('?'),
-        }
-    }
-    plain
 }

@@ -61,12 +61,8 @@ pub fn fitted<'a>(text: &'a str, room: usize, theme: &Theme) -> Cow<'a, str> {
     if width(trimmed) <= room {
         return Cow::Borrowed(head(text, room));
     }
-    let ellipsis = theme.text("…");
-    let ellipsis = if width(&ellipsis) <= room {
-        ellipsis
-    } else {
-        Cow::Borrowed("")
-    };
+    let ellipsis = Some(theme.text("…")).filter(|ellipsis| width(ellipsis) <= room);
+    let ellipsis = ellipsis.unwrap_or_default();
     let kept = head(trimmed, room - width(&ellipsis));
     Cow::Owned(format!("{}{ellipsis}", kept.trim_end()))
 }
@@ -133,13 +129,6 @@ pub fn field_text(text: &str, cursor: usize, room: usize, theme: &Theme) -> (Str
     )
 }
 
-pub fn field_columns(text: &str, cursor: usize, room: usize, theme: &Theme) -> (String, usize) {
-    let (shown, column) = field_text(text, cursor, room, theme);
-    let shown = fitted(&shown, room, theme);
-    let fill = " ".repeat(room - width(&shown));
-    (format!("{shown}{fill}"), column)
-}
-
 pub fn prompt(
     buffer: &mut Buffer,
     area: Rect,
@@ -173,15 +162,9 @@ pub fn wrapped(buffer: &mut Buffer, area: Rect, theme: &Theme, text: &str, role:
     for (index, &piece) in lines.iter().enumerate().take(last) {
         line(buffer, row(area, index), theme, [(piece, role)]);
     }
-    if let Some(&piece) = lines.get(last) {
-        // The whole rest makes the last line too long, so that it ends in an ellipsis.
-        let rest = if last + 1 < lines.len() {
-            lines[last..].join(" ")
-        } else {
-            piece.to_owned()
-        };
-        line(buffer, row(area, last), theme, [(rest.as_str(), role)]);
-    }
+    // The whole rest makes the last line too long, so that it ends in an ellipsis.
+    let rest = lines[last..].join(" ");
+    line(buffer, row(area, last), theme, [(&*rest, role)]);
     lines.len()
 }
 
@@ -200,14 +183,11 @@ pub(in crate::tui) fn head(text: &str, room: usize) -> &str {
     if is_plain(text) {
         return &text[..room.min(text.len())];
     }
-    let mut ends = text
+    let ends = text
         .char_indices()
         .map(|(at, character)| at + character.len_utf8());
-    let mut kept = "";
-    while let Some(end) = ends.next().filter(|&end| width(&text[..end]) <= room) {
-        kept = &text[..end];
-    }
-    kept
+    let fits = |end: &usize| width(&text[..*end]) <= room;
+    &text[..ends.take_while(fits).last().unwrap_or(0)]
 }
 
 pub fn broken(text: &str, room: usize) -> Vec<&str> {
