@@ -76,9 +76,9 @@ impl WatchRequest {
 pub struct Pipeline {
     pub processing: Processing,
     /// The number of first frames that the tare is made of: 0 for none, None for the recording's own tare.
-    wanted: Option<u64>,
-    from_settings: bool,
-    making: Option<TareFrames>,
+    pub(crate) wanted: Option<u64>,
+    pub(crate) from_settings: bool,
+    pub(crate) making: Option<TareFrames>,
     pub(crate) origin: Option<TareOrigin>,
 }
 
@@ -114,15 +114,6 @@ impl Pipeline {
         };
         pipeline.restart();
         pipeline
-    }
-
-    /// The same tare for another processing.
-    #[must_use]
-    pub fn with(&self, processing: Processing) -> Self {
-        Self {
-            processing,
-            ..self.clone()
-        }
     }
 
     pub fn rule(&self) -> Option<SetRule> {

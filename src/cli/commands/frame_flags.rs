@@ -139,7 +139,10 @@ impl FrameFlags {
         }
         Ok(match self.tare {
             Some(_) => Pipeline::new(processing, self.tare, RuleOrigin::Flag),
-            None => usual.with(processing),
+            None => Pipeline {
+                processing,
+                ..usual.clone()
+            },
         })
     }
 }

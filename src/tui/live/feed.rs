@@ -81,13 +81,11 @@ impl SourceGaps {
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum SourceState {
+    /// Frames come, or the first one is waited for.
     #[default]
-    Waiting,
     Live,
-    /// No frame has come for two seconds or longer, or since the source came back; the likely cause.
+    /// No frame has come for two seconds or longer, or the source is gone or not there yet, and why.
     Silent(String),
-    /// The source is gone or not there yet, and why; it is tried again each second.
-    Lost(String),
     Ended,
     /// The source cannot be read, and why.
     Failed(String),
@@ -314,13 +312,13 @@ impl Feed {
             }
             AcquireEvent::Absent(error) => {
                 let (name, reason) = (source.name(), system_reason(error));
-                to(SourceState::Lost(format!(
+                to(SourceState::Silent(format!(
                     "waiting for {name}, trying again each second: {reason}"
                 )))
             }
             AcquireEvent::Lost(error) => self.change(|pending| {
                 pending.gap.get_or_insert_default();
-                pending.batch.status.state = SourceState::Lost(AcquireEvent::lost(error));
+                pending.batch.status.state = SourceState::Silent(AcquireEvent::lost(error));
             }),
             AcquireEvent::Back { gap } => self.change(|pending| pending.back_after(gap)),
             AcquireEvent::Note(note) if note.is_plain() => false,
@@ -357,7 +355,7 @@ impl FeedStatus {
 impl Pending {
     fn back_after(&mut self, time: Duration) {
         self.batch.status.state = match &mut self.gap {
-            None => SourceState::Waiting,
+            None => SourceState::Live,
             Some(gap) => {
                 *gap += time;
                 let back = AcquireEvent::back_after(*gap);

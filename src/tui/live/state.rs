@@ -88,14 +88,6 @@ impl Live {
         }
     }
 
-    /// Returns the frame that the numbers are of; None before the first one.
-    pub fn frame(&self) -> Option<Arc<Frame>> {
-        match &self.reading {
-            Some(reading) => Some(Arc::clone(&reading.frame)),
-            None => self.history.shown().map(|(_, frame)| frame),
-        }
-    }
-
     /// Returns why a requested tare is missing; otherwise why the shown frame cannot be processed, or why it has no
     /// imprint.
     pub fn error(&self) -> Option<&FrameError> {
@@ -142,9 +134,7 @@ impl Live {
         {
             troubles.push("frames of another size are not recorded".to_owned());
         }
-        if let SourceState::Silent(why) | SourceState::Lost(why) | SourceState::Failed(why) =
-            &self.status.state
-        {
+        if let SourceState::Silent(why) | SourceState::Failed(why) = &self.status.state {
             troubles.push(why.clone());
         }
         troubles.extend(self.status.gaps.sentence_since(self.seen_gaps));
@@ -214,12 +204,9 @@ impl Live {
     }
 
     /// Returns the frames per second, computed from the times of the last frames or, if they have no times, as stated
-    /// in the recording. None while the source is silent or lost.
+    /// in the recording. None while the source is silent.
     pub fn rate(&self) -> Option<f64> {
-        if matches!(
-            self.status.state,
-            SourceState::Silent(_) | SourceState::Lost(_)
-        ) {
+        if matches!(self.status.state, SourceState::Silent(_)) {
             return None;
         }
         let step = (self.status.channel.as_deref()).and_then(|channel| channel.seconds_per_frame);
@@ -461,7 +448,7 @@ impl Live {
         self.history.peak = None;
         self.pipeline.restart();
         self.tare_error = None;
-        self.status.state = SourceState::Waiting;
+        self.status.state = SourceState::Live;
         (self.status.gaps, self.seen_gaps) = (SourceGaps::default(), SourceGaps::default());
         (self.status.note, self.seen_notes) = (None, 0);
         self.read();

@@ -167,11 +167,8 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) {
             Err(refused) => refuse(app, refused),
         },
         LiveMessage::Source(source) => check_source(app, source),
-        // These are typed after `:`, and reach the page from there.
-        LiveMessage::Open
-        | LiveMessage::Watch(_)
-        | LiveMessage::AtLeast(_)
-        | LiveMessage::Size(_) => {}
+        // The others are typed after `:`, and reach the page from there.
+        _ => {}
     }
 }
 

@@ -360,7 +360,8 @@ fn of_state(live: &Live) -> Vec<(String, Role)> {
     {
         say(format!("channel {name} of {}", status.channels), Role::Text);
     }
-    let frame = live.frame();
+    let shown = || live.history.shown().map(|(_, frame)| frame);
+    let frame = (live.reading.as_ref()).map_or_else(shown, |own| Some(own.frame.clone()));
     match &frame {
         Some(frame) => {
             let label = frame.label.as_ref();

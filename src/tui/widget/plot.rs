@@ -89,23 +89,19 @@ impl PlotField {
 
     pub fn draw_axes(&self, theme: &Theme, buffer: &mut Buffer, [upward, right]: [&str; 2]) {
         write::text(buffer, self.area, theme, upward, Role::Key);
-        self.draw_frame(theme, buffer);
-        self.draw_upwards(theme, buffer);
-        self.draw_across(theme, buffer, right);
-    }
-
-    fn draw_frame(&self, theme: &Theme, buffer: &mut Buffer) {
         let [across, down, corner] = if theme.ascii {
             ['-', '|', '+']
         } else {
             ['─', '│', '└']
         };
         let (left, bottom) = (self.field.x - 1, self.field.bottom());
-        let upward = (self.field.y..bottom).map(|y| (left, y, down));
-        let right = (self.field.x..self.field.right()).map(|x| (x, bottom, across));
-        for (x, y, sign) in upward.chain(right).chain([(left, bottom, corner)]) {
+        let up = (self.field.y..bottom).map(|y| (left, y, down));
+        let aside = (self.field.x..self.field.right()).map(|x| (x, bottom, across));
+        for (x, y, sign) in up.chain(aside).chain([(left, bottom, corner)]) {
             write::sign(buffer, (x, y), sign, theme.style(Role::Quiet));
         }
+        self.draw_upwards(theme, buffer);
+        self.draw_across(theme, buffer, right);
     }
 
     /// Draws the marks and numbers of the upward axis; two numbers never share a line.

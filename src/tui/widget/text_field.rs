@@ -27,7 +27,7 @@ impl TextField {
     }
 
     pub fn enter(&mut self) {
-        self.edit(InputRequest::GoToEnd);
+        let _ = self.input.handle(InputRequest::GoToEnd);
         self.fresh = true;
     }
 
@@ -83,19 +83,14 @@ impl TextField {
             Message::Erase(Erase::Under) => InputRequest::DeleteNextChar,
             _ => return false,
         };
-        self.edit(request);
+        let _ = self.input.handle(request);
         true
     }
 
     fn insert(&mut self, character: char) {
         if !character.is_control() && self.text().chars().count() < self.longest {
-            self.edit(InputRequest::InsertChar(character));
+            let _ = self.input.handle(InputRequest::InsertChar(character));
         }
-    }
-
-    fn edit(&mut self, request: InputRequest) {
-        // The result only says whether anything changed.
-        let _ = self.input.handle(request);
     }
 }
 
