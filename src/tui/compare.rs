@@ -19,7 +19,7 @@ use taxel_files::formats::value;
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Canvas, Flow, Page, Slot, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::grid::{CellSize, Grid, Look, RULER, Window, beside_rulers};
 use crate::tui::keys::key::Arrow;
@@ -238,7 +238,7 @@ fn difference(descriptor: &Descriptor, first: Value, second: Value) -> Value {
 
 impl Page for Comparison {
     fn on(&mut self, app: &mut App, message: &Message) -> Flow {
-        let Some(area) = app.panes().map(|panes| panes.area(self.slot())) else {
+        let Some(area) = app.panes().map(|panes| panes.area(self.place())) else {
             return Flow::Stay;
         };
         let by = match *message {
@@ -269,8 +269,8 @@ impl Page for Comparison {
         Context::Compare
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Screen
+    fn place(&self) -> Place {
+        Place::Screen
     }
 
     fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {

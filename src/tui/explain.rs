@@ -6,8 +6,9 @@ use taxel_core::description::{DESCRIPTORS, Descriptor};
 use taxel_files::formats::value;
 
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Canvas, Flow, Page, Slot, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Wheel};
 use crate::tui::app::state::App;
+use crate::tui::explore::results::Results;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Context;
 use crate::tui::widget::theme::Role;
@@ -38,7 +39,7 @@ impl Explain {
             }))
         };
         let chosen = app
-            .results_below()
+            .page::<Results>()
             .map(|results| results.feature().descriptor.key);
         let is_chosen = |own: &Descriptor| Some(own.key) == chosen;
         Self {
@@ -110,8 +111,8 @@ impl Page for Explain {
         Context::Explain
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Body
+    fn place(&self) -> Place {
+        Place::Body
     }
 
     fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {

@@ -11,7 +11,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Canvas, Flow, LinePrompt, Page, Slot, Wheel};
+use crate::tui::app::page::{Canvas, Flow, LinePrompt, Page, Place, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::{Context, HelpLine, Keymap, help};
@@ -129,7 +129,7 @@ impl Help {
 impl Page for Help {
     /// Cancel leaves the search; without a search, help closes before Cancel and Quit come here.
     fn on(&mut self, app: &mut App, message: &Message) -> Flow {
-        let (keymap, room) = (app.keymap(), app.body_size());
+        let (keymap, room) = (&app.keymap, app.body_size());
         // One line of the screenful before stays visible, for the reader's orientation.
         let page = room.1.saturating_sub(1).max(1).cast_signed();
         match *message {
@@ -163,8 +163,8 @@ impl Page for Help {
         Context::Help
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Body
+    fn place(&self) -> Place {
+        Place::Body
     }
 
     fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
@@ -242,7 +242,7 @@ impl LinePrompt for SearchDialog {
         let cancelled = matches!(message, Message::Cancel | Message::Quit);
         if !cancelled {
             self.field.take(message);
-            help.search(self.field.text(), app.keymap(), app.body_size());
+            help.search(self.field.text(), &app.keymap, app.body_size());
             self.found = help.number();
         }
         if let Some(below) = app.top_mut::<Help>() {

@@ -15,7 +15,7 @@ use taxel_files::formats::value::counted;
 use crate::tui::app::change::{compare_with, go_to};
 use crate::tui::app::document::Reading;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Slot, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::keys::keymap::Context;
 use crate::tui::widget::rows::{ListRows, moved};
@@ -76,8 +76,8 @@ impl Page for HistoryDialog {
         Context::History
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Body
+    fn place(&self) -> Place {
+        Place::Body
     }
 
     fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {

@@ -59,7 +59,8 @@ fn wrong_settings_are_refused_with_their_places() {
 
 fn session(settings: &str, keys: &str) -> Session {
     let settings = Settings::read(settings).expect("a file of settings");
-    let app = App::new(&Options::plain(false)).with_keymap(settings.keymap().clone());
+    let mut app = App::new(&Options::plain(false));
+    app.keymap = settings.keymap().clone();
     let world = Jobs::scratch().expect("a folder");
     let mut session = Session::of(app, world, 80, 24);
     session.keys(keys).expect("the keys of a test are right");

@@ -102,9 +102,9 @@ pub(crate) fn open(
         seed: RandomState::new().hash_one(0),
     };
     let mut world = Jobs::new(cx.shelf.library()?).with_model_cache(ModelCache::of_user());
-    let app = App::new(&options)
-        .with_keymap(settings.keymap().clone())
-        .with_watch_settings(settings.watch_request());
+    let mut app = App::new(&options);
+    app.keymap = settings.keymap().clone();
+    app.watch_settings = settings.watch_request();
     let first = watched.map(|request| Message::Live(LiveMessage::Watch(Arc::new(request))));
     let mut record = match record {
         Some(path) => {

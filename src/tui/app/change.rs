@@ -24,10 +24,13 @@ use crate::tui::compare::{Comparison, heading};
 use crate::tui::files;
 use crate::tui::jobs::answer;
 use crate::tui::keys::action;
-use crate::tui::keys::key::Arrow;
 
 pub(in crate::tui) fn inform(app: &mut App, text: impl Into<String>) {
-    app.notice = Some(Notice::Info(text.into()));
+    app.notice = Some(Notice {
+        text: text.into(),
+        is_refusal: false,
+        stays: false,
+    });
 }
 
 /// The matrix comes second: it is the later one, or is being made from the other.
@@ -39,7 +42,10 @@ pub(in crate::tui) fn compare_with(app: &mut App, name: &str, other: &Imprint) {
 
 /// Shows a notice that says why something was not done, whatever the reason: an `!` stands before it.
 pub(in crate::tui) fn refuse(app: &mut App, text: impl Into<String>) {
-    app.notice = Some(Notice::Refusal(text.into()));
+    inform(app, text);
+    if let Some(notice) = &mut app.notice {
+        notice.is_refusal = true;
+    }
 }
 
 /// The chosen region stays chosen if there still is a region of that number.
@@ -76,7 +82,7 @@ pub(in crate::tui) fn go_to(app: &mut App, step: usize) {
 }
 
 fn settle_elsewhere(app: &mut App) {
-    let_go(app);
+    app.held = None;
     app.pen = None;
     app.paint = None;
     settle(app);
@@ -85,7 +91,7 @@ fn settle_elsewhere(app: &mut App) {
 pub(in crate::tui) fn settle(app: &mut App) {
     app.moves = None;
     if app.history.present().source.is_none() {
-        let_go(app);
+        app.held = None;
     }
     app.read();
     let regions = app.reading().regions.len();
@@ -116,10 +122,6 @@ pub(in crate::tui) fn hold(app: &mut App) {
     }
 }
 
-pub(in crate::tui) fn let_go(app: &mut App) {
-    app.held = None;
-}
-
 pub(in crate::tui) fn put_back(app: &mut App) {
     let Some(before) = app.held.take() else {
         return refuse(app, "nothing is held");
@@ -146,8 +148,7 @@ fn change_shape(app: &mut App, document: Document) {
 
 pub(in crate::tui) fn is_other(app: &App, document: &Document) -> bool {
     let present = app.history.present().source.as_ref();
-    let name = app.history.origin().name.as_ref();
-    name.is_some_and(|stored| match &document.source {
+    app.stored().is_some_and(|stored| match &document.source {
         Some(Source::Figure(figure)) => present.and_then(Source::kind) != Some(figure.kind()),
         Some(Source::Picture(picture)) => match present {
             Some(Source::Picture(old)) if old.imprint() == picture.imprint() => false,
@@ -161,18 +162,17 @@ pub(in crate::tui) fn is_other(app: &App, document: &Document) -> bool {
 /// is a new document, and the name stays with the old one. A notice says how many taxels set by hand were dropped. A
 /// held shape is let go.
 pub(in crate::tui) fn replace(app: &mut App, document: Document) {
-    let_go(app);
+    app.held = None;
     app.pen = None;
     let present = app.history.present();
     if *present == document {
         return;
     }
     let dropped = dropped(app, &document);
-    let lost = present
-        .source
-        .as_ref()
-        .filter(|_| document.source.is_none());
-    let lost = lost.map(Source::kind_name);
+    let lost = match (&present.source, &document.source) {
+        (Some(lost), None) => Some(lost.kind_name()),
+        _ => None,
+    };
     if is_other(app, &document) {
         let origin = DocumentOrigin::unsaved(&document);
         begin(app, origin, document);
@@ -206,18 +206,14 @@ fn dropped(app: &App, document: &Document) -> u32 {
 }
 
 fn say_dropped(app: &mut App, dropped: u32) {
-    if dropped > 0 {
-        let taxels = counted(dropped, "taxel");
-        let (were, them) = match dropped {
-            1 => ("was", "it"),
-            _ => ("were", "them"),
-        };
-        let undo = app.key_of(&action::UNDO);
-        inform(
-            app,
-            format!("{taxels} set by hand {were} dropped; {undo} restores {them}"),
-        );
-    }
+    let (were, them) = match dropped {
+        0 => return,
+        1 => ("was", "it"),
+        _ => ("were", "them"),
+    };
+    let (taxels, undo) = (counted(dropped, "taxel"), app.key_of(&action::UNDO));
+    let text = format!("{taxels} set by hand {were} dropped; {undo} restores {them}");
+    inform(app, text);
 }
 
 /// Says that only a figure or a picture can be moved, and how there is one.
@@ -240,20 +236,12 @@ pub(in crate::tui) fn movable(app: &mut App) -> Option<Source> {
     source
 }
 
-pub(in crate::tui) fn nudge(app: &mut App, arrow: Arrow) {
-    let (dx, dy) = arrow.step();
-    let length = app.step;
-    shift(app, f64::from(dx) * length, f64::from(dy) * length);
-}
-
 pub(in crate::tui) fn shift(app: &mut App, dx: f64, dy: f64) {
     let Some(source) = movable(app) else { return };
     let ways = [(Parameter::X0, dx), (Parameter::Y0, dy)];
-    let moved: Vec<(Parameter, f64)> = ways
-        .into_iter()
-        .filter(|(_, by)| *by != 0.0)
-        .filter_map(|(parameter, by)| Some((parameter, rounded(source.get(parameter)? + by))))
-        .collect();
+    let ways = ways.into_iter().filter(|(_, by)| *by != 0.0);
+    let moved = ways.filter_map(|(way, by)| Some((way, rounded(source.get(way)? + by))));
+    let moved: Vec<_> = moved.collect();
     set(app, source, MoveKind::Along, &moved);
 }
 
@@ -276,9 +264,9 @@ pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
         let text = format!("a figure has no zoom; {figure} changes its size");
         return refuse(app, text);
     };
-    let (x, y) = (rounded(x + by), rounded(y + by));
-    let values = [(Parameter::ZoomX, x), (Parameter::ZoomY, y)];
-    set(app, source, MoveKind::Zoom, &values);
+    let zoomed = [(Parameter::ZoomX, x), (Parameter::ZoomY, y)];
+    let zoomed = zoomed.map(|(way, zoom)| (way, rounded(zoom + by)));
+    set(app, source, MoveKind::Zoom, &zoomed);
 }
 
 /// Writes a file, unless its content cannot be made. If a file of that name exists, asks whether to replace it.
@@ -298,12 +286,9 @@ pub(crate) fn write_file(
         answer(move |app| match written {
             Ok(Some(path)) => inform(app, format!("written: {path}")),
             Ok(None) => {
-                let again = name.clone();
-                let yes = move |app: &mut App| {
-                    write_file(app, again, Ok(content), Existing::Replaced);
-                };
-                let question = Question::replaces(&name, yes);
-                app.open(question);
+                let question = format!("{name:?} already exists.");
+                let yes = |app: &mut App| write_file(app, name, Ok(content), Existing::Replaced);
+                app.open(Question::new(question, "Replace it?", yes));
             }
             Err(reason) => refuse(app, reason),
         })
@@ -315,7 +300,8 @@ pub(crate) fn write_file(
 pub(crate) fn from_prompt(app: &mut App, prompt: Box<dyn Page>, act: impl FnOnce(&mut App)) {
     let pages = app.pages.len();
     act(app);
-    if matches!(app.notice, Some(Notice::Refusal(_))) && app.pages.len() == pages {
+    let is_refused = app.notice.as_ref().is_some_and(|said| said.is_refusal);
+    if is_refused && app.pages.len() == pages {
         app.pages.push(prompt);
     } else {
         app.prompt = Some(prompt);
@@ -341,21 +327,15 @@ fn rounded(value: f64) -> f64 {
 /// step of the history. A value out of range is refused, and nothing changes.
 fn set(app: &mut App, source: Source, way: MoveKind, values: &[(Parameter, f64)]) {
     let sensor = app.history.present().sensor;
-    let moved = values
-        .iter()
-        .try_fold(source, |source, &(parameter, value)| {
-            source.with(parameter, value, &sensor)
-        });
-    match moved {
+    let mut values = values.iter();
+    match values.try_fold(source, |source, &(own, value)| {
+        source.with(own, value, &sensor)
+    }) {
         // If nothing moves, the taxels set by hand stay.
         Ok(source) if app.history.present().source.as_ref() == Some(&source) => {}
         Ok(source) => {
             let document = Document::touched(sensor, source);
-            let way = if app.held.is_some() {
-                MoveKind::Held
-            } else {
-                way
-            };
+            let way = app.held.as_ref().map_or(way, |_| MoveKind::Held);
             if app.moves == Some(way) {
                 app.history.amend(document);
                 settle(app);

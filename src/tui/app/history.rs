@@ -3,12 +3,11 @@
 use taxel_core::parameter::Parameter;
 use taxel_core::sensor::SENSOR_PARAMETERS;
 use taxel_core::source::Source;
-use taxel_core::touch::Plane;
 use taxel_files::formats::name::folded;
 use taxel_files::formats::value::counted;
 use taxel_files::storage::ShapeOrigin;
 
-use crate::tui::app::document::Document;
+use crate::tui::app::document::{Document, Reading};
 
 /// All states from one origin to the next belong together, and share the name that they are stored under.
 #[derive(Clone, Debug)]
@@ -42,21 +41,6 @@ impl DocumentOrigin {
         Self { brought_by, ..self }
     }
 
-    #[must_use]
-    pub fn proposing(self, name: impl Into<String>) -> Self {
-        let proposed = Some(name.into());
-        Self { proposed, ..self }
-    }
-
-    #[must_use]
-    pub fn loaded(self, name: StoredName) -> Self {
-        Self {
-            brought_by: Some(format!("{} loaded", name.name)),
-            name: Some(name),
-            ..self
-        }
-    }
-
     /// Returns true if a document of this origin is unsaved work, which would be lost. An empty document has nothing
     /// to lose.
     pub fn would_lose(&self, document: &Document) -> bool {
@@ -69,6 +53,12 @@ pub struct StoredName {
     pub name: String,
     pub stamp: u64,
     pub owner: ShapeOrigin,
+}
+
+impl StoredName {
+    pub fn is_own(&self) -> bool {
+        self.owner == ShapeOrigin::Own
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -91,22 +81,16 @@ pub struct History {
 
 impl History {
     pub fn new(document: Document) -> Self {
-        let origins = vec![DocumentOrigin::of(&document)];
-        let (origin, chosen) = (0, None);
         Self {
+            origins: vec![DocumentOrigin::of(&document)],
             states: vec![State {
                 document,
-                origin,
-                chosen,
+                origin: 0,
+                chosen: None,
             }],
             present: 0,
             goes_on: false,
-            origins,
         }
-    }
-
-    fn state(&self) -> &State {
-        &self.states[self.present]
     }
 
     fn until_now(&self) -> &[State] {
@@ -114,11 +98,11 @@ impl History {
     }
 
     pub fn present(&self) -> &Document {
-        &self.state().document
+        &self.states[self.present].document
     }
 
     pub fn chosen(&self) -> Option<usize> {
-        self.state().chosen
+        self.states[self.present].chosen
     }
 
     pub fn choose(&mut self, region: Option<usize>) {
@@ -126,7 +110,7 @@ impl History {
     }
 
     pub(crate) fn origin_index(&self) -> usize {
-        self.state().origin
+        self.states[self.present].origin
     }
 
     pub fn origin(&self) -> &DocumentOrigin {
@@ -141,9 +125,11 @@ impl History {
 
     /// The document with which the present one began.
     pub fn begun(&self) -> &Document {
-        let own = self.until_now().iter().rev();
-        let own = own.take_while(|state| state.origin == self.origin_index());
-        own.last().map_or(self.present(), |state| &state.document)
+        let mut runs = self
+            .until_now()
+            .chunk_by(|state, next| state.origin == next.origin);
+        runs.next_back()
+            .map_or(self.present(), |own| &own[0].document)
     }
 
     /// A change that changes nothing leaves no trace.
@@ -169,7 +155,6 @@ impl History {
     }
 
     fn add(&mut self, document: Document, origin: usize) {
-        self.drop_empty_step();
         let chosen = self.chosen();
         self.present += 1;
         self.states.truncate(self.present);
@@ -181,30 +166,18 @@ impl History {
         self.goes_on = true;
     }
 
-    /// Continues the last change, which stays one change; after undo and redo, this is a new change.
+    /// Continues the last change, which stays one change, or leaves no trace once it has come to nothing; after undo
+    /// and redo, this is a new change.
     pub fn amend(&mut self, document: Document) {
-        if self.goes_on {
-            self.states[self.present].document = document;
-        } else {
-            self.push(document);
-        }
-    }
-
-    /// Whether the last change has come to nothing.
-    fn ends_in_empty_step(&self) -> bool {
         match self.until_now() {
-            [.., before, now] if self.goes_on => {
-                before.document == now.document && before.origin == now.origin
+            _ if !self.goes_on => self.push(document),
+            [.., before, now] if before.document == document && before.origin == now.origin => {
+                self.states[self.present - 1].chosen = now.chosen;
+                self.states.remove(self.present);
+                self.present -= 1;
+                self.goes_on = false;
             }
-            _ => false,
-        }
-    }
-
-    fn drop_empty_step(&mut self) {
-        if self.ends_in_empty_step() {
-            self.states.remove(self.present);
-            self.present -= 1;
-            self.goes_on = false;
+            _ => self.states[self.present].document = document,
         }
     }
 
@@ -220,8 +193,7 @@ impl History {
     pub fn removed(&mut self, name: &str) {
         for origin in &mut self.origins {
             let own = origin.name.as_ref();
-            let own = own.filter(|stored| stored.owner == ShapeOrigin::Own);
-            if own.is_some_and(|stored| folded(&stored.name) == folded(name)) {
+            if own.is_some_and(|own| own.is_own() && folded(&own.name) == folded(name)) {
                 origin.name = None;
                 origin.saved = Document::empty(origin.saved.sensor);
             }
@@ -231,16 +203,15 @@ impl History {
     /// The documents that would be lost, the present one last. Of the states of one origin the last one counts; what
     /// was undone was given up.
     pub fn unsaved(&self) -> impl Iterator<Item = (&Document, &DocumentOrigin)> {
-        let states = self.until_now();
-        let nexts = states.iter().skip(1).map(|state| Some(state.origin));
-        let last = states.iter().zip(nexts.chain([None]));
-        let last = last.filter(|(state, next)| *next != Some(state.origin));
-        let last = last.map(|(state, _)| (&state.document, &self.origins[state.origin]));
+        let runs = self
+            .until_now()
+            .chunk_by(|state, next| state.origin == next.origin);
+        let last = runs.filter_map(<[State]>::last);
+        let last = last.map(|state| (&state.document, &self.origins[state.origin]));
         last.filter(|(document, origin)| origin.would_lose(document))
     }
 
     pub fn undo(&mut self) -> Option<String> {
-        self.drop_empty_step();
         let earlier = self.present.checked_sub(1)?;
         let undone = self.step(earlier);
         self.go_to(earlier);
@@ -248,11 +219,10 @@ impl History {
     }
 
     pub fn can_undo(&self) -> bool {
-        self.present > usize::from(self.ends_in_empty_step())
+        self.present > 0
     }
 
     pub fn redo(&mut self) -> Option<String> {
-        self.drop_empty_step();
         let later = self.present + 1;
         let redone = (later < self.states.len()).then(|| self.step(self.present))?;
         self.go_to(later);
@@ -276,8 +246,7 @@ impl History {
         brought_by.unwrap_or_else(|| difference(&from.document, &to.document))
     }
 
-    pub fn steps(&mut self) -> (Vec<String>, usize) {
-        self.drop_empty_step();
+    pub fn steps(&self) -> (Vec<String>, usize) {
         let steps = (1..self.states.len()).map(|state| self.step(state - 1));
         (steps.collect(), self.present)
     }
@@ -287,9 +256,8 @@ impl History {
     }
 
     pub fn before(&self) -> Option<&Document> {
-        let past = self.until_now().iter().rev().map(|state| &state.document);
-        let mut others = past.filter(|document| *document != self.present());
-        others.next()
+        let mut past = self.until_now().iter().rev().map(|state| &state.document);
+        past.find(|document| *document != self.present())
     }
 
     pub fn after(&self, step: usize) -> Option<&Document> {
@@ -299,15 +267,26 @@ impl History {
 
 /// What changed from one document to the next, in words.
 pub fn difference(from: &Document, to: &Document) -> String {
-    let mut changes = values(
-        SENSOR_PARAMETERS,
-        |p| from.sensor.get(p),
-        |p| to.sensor.get(p),
-    );
+    let mut changes = Vec::new();
+    let mut add = |parameter: Parameter, before: Option<f64>, after: Option<f64>| {
+        if before != after {
+            let text = |value| match value {
+                Some(value) => parameter.format(value),
+                None => "none".to_owned(),
+            };
+            let (label, before, after) = (parameter.row().label, text(before), text(after));
+            changes.push(format!("{label} {before} → {after}"));
+        }
+    };
+    for &own in SENSOR_PARAMETERS {
+        add(own, from.sensor.get(own), to.sensor.get(own));
+    }
     match (&from.source, &to.source) {
         (_, None) => {}
         (Some(from), Some(to)) if alike(from, to) => {
-            changes.extend(values(to.parameters(), |p| from.get(p), |p| to.get(p)));
+            for &own in to.parameters() {
+                add(own, from.get(own), to.get(own));
+            }
         }
         (_, Some(to)) => changes.push(to.to_string()),
     }
@@ -326,32 +305,12 @@ fn alike(from: &Source, to: &Source) -> bool {
     }
 }
 
-fn values(
-    parameters: &[Parameter],
-    from: impl Fn(Parameter) -> Option<f64>,
-    to: impl Fn(Parameter) -> Option<f64>,
-) -> Vec<String> {
-    let text = |parameter: Parameter, value: Option<f64>| {
-        value.map_or("none".to_owned(), |value| parameter.format(value))
-    };
-    let changed = parameters.iter().filter(|&&own| from(own) != to(own));
-    let changed = changed.map(|&own| {
-        let (before, after) = (text(own, from(own)), text(own, to(own)));
-        format!("{} {before} → {after}", own.row().label)
-    });
-    changed.collect()
-}
-
 fn edits(from: &Document, to: &Document) -> String {
     let switched = from.edits.differing(&to.edits);
     match (switched.count(), switched.active().next()) {
         (count, _) if to.is_empty() && (from.source.is_some() || count > 1) => "emptied".to_owned(),
         (1, Some((column, row))) => {
-            let touched = to
-                .source
-                .as_ref()
-                .is_some_and(|source| Plane::new(to.sensor).touch(source).get(column, row));
-            let is_on = touched != to.edits.get(column, row);
+            let is_on = Reading::of(to).imprint.get(column, row);
             format!("taxel {column}, {row} {}", if is_on { "on" } else { "off" })
         }
         (count, _) => format!("{} switched", counted(count, "taxel")),

@@ -70,7 +70,7 @@ pub fn draw(theme: &Theme, buffer: &mut Buffer, items: &[Item<'_>]) {
 }
 
 pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
-    let (context, keymap) = (app.context(), app.keymap());
+    let (context, keymap) = (app.context(), &app.keymap);
     let options = matches!(context, Context::Matrix | Context::Hold | Context::Draw);
     let rows: Vec<(&Binding, &str)> = if options {
         let all = keymap.rows().iter().take(MENU).chain(help(keymap));
@@ -85,7 +85,7 @@ pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
 }
 
 pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
-    let (context, keymap) = (app.context(), app.keymap());
+    let (context, keymap) = (app.context(), &app.keymap);
     let line = context.outer().filter(|&outer| outer == Context::Line);
     let screen = context.screen().filter(|&screen| screen != context);
     let taken: Vec<Key> = keymap

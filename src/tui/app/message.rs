@@ -76,7 +76,9 @@ pub enum Message {
     Zoom(i8),
     Mouse(Mouse),
     Resized(u16, u16),
-    Request(LibraryRequest),
+    SaveAs(Name),
+    Named(Purpose, String),
+    Restore(Option<String>),
     Become(Box<Document>),
     Command,
     Copy(Copied),
@@ -151,11 +153,4 @@ pub enum Purpose {
     Delete,
     Picture,
     Compare,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub enum LibraryRequest {
-    Save(Name),
-    Named(Purpose, String),
-    Restore(Option<String>),
 }

@@ -9,7 +9,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::change::{change, settle};
 use crate::tui::app::message::{Message, Mouse, MouseKind};
-use crate::tui::app::page::{Page, Slot, Wheel};
+use crate::tui::app::page::Place;
 use crate::tui::app::state::{App, NarrowPane};
 use crate::tui::app::{menu, status};
 use crate::tui::widget::write::taxels;
@@ -25,12 +25,10 @@ pub struct Paint {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Target {
-    Key(Message),
+    Message(Message),
     /// A taxel: column, row, and whether the whole matrix is visible, so that the cursor may go there without
     /// scrolling it.
     Taxel(u8, u8, bool),
-    Panel,
-    Page(Message),
 }
 
 /// Handles an event of the mouse, or returns the message that a key would have sent. A click on nothing does nothing,
@@ -70,101 +68,85 @@ pub(in crate::tui) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
             let moved = |paint: &Paint| paint.from != (column, row);
             if let Some(own) = app.paint.filter(moved) {
                 paint(app, own, (column, row));
-                app.paint = Some(Paint {
-                    from: (column, row),
-                    begun: true,
-                    ..own
-                });
                 if whole {
                     app.cursor = (column, row);
                 }
             }
         }
-        (MouseKind::Press, Some(Target::Panel)) => return Some(Message::Region(1)),
-        (MouseKind::Press, Some(Target::Key(message) | Target::Page(message))) => {
-            return Some(message);
-        }
+        (MouseKind::Press, Some(Target::Message(message))) => return Some(message),
         _ => {}
     }
     None
 }
 
 /// The taxels of a drag are one change: one undo takes all of them back.
-fn paint(
-    app: &mut App,
-    Paint {
-        active,
-        from,
-        begun,
-    }: Paint,
-    to: (u8, u8),
-) {
+fn paint(app: &mut App, own: Paint, to: (u8, u8)) {
+    let from = own.from;
     let imprint = app.reading().imprint;
     let mut document = app.history.present().clone();
     let steps = from.0.abs_diff(to.0).max(from.1.abs_diff(to.1)).max(1);
     for step in 0..=steps {
         let between = |a: u8, b: u8| {
-            let (a, b, step, steps) = (
-                i32::from(a),
-                i32::from(b),
-                i32::from(step),
-                i32::from(steps),
-            );
+            let [a, b, step, steps] = [a, b, step, steps].map(i32::from);
             taxels((2 * a * steps + 2 * (b - a) * step + steps) / (2 * steps))
         };
         let (column, row) = (between(from.0, to.0), between(from.1, to.1));
-        if imprint.get(column, row) != active {
+        if imprint.get(column, row) != own.active {
             document.edits.toggle(column, row);
         }
     }
-    if begun {
+    if own.begun {
         app.history.amend(document);
         settle(app);
     } else {
         change(app, document);
     }
+    app.paint = Some(Paint {
+        from: to,
+        begun: true,
+        ..own
+    });
 }
 
 /// Returns the message of a notch of the wheel, up if negative; None if there is nothing to scroll.
 fn scroll(app: &App, notch: i16) -> Option<Message> {
-    let top = app.top_page();
-    let lines = top.map_or(Wheel::Idle, Page::wheel).lines()?;
-    Some(Message::Scroll(notch * lines))
+    let lines = app.top_page().map_or(0, |page| page.wheel() as i16);
+    (lines > 0).then_some(Message::Scroll(notch * lines))
 }
 
 fn at(app: &App, column: u16, row: u16) -> Option<Target> {
     let panes = app.panes()?;
-    let place = Position::new(column, row);
-    let inside = |area: Rect| area.contains(place);
-    let items = match place {
+    let at = Position::new(column, row);
+    let inside = |area: Rect| area.contains(at);
+    let items = match at {
         _ if inside(panes.menu) => Some(menu::menu(app, panes.menu)),
         _ if inside(panes.hints) => Some(menu::hints(app, &panes)),
         _ => None,
     };
     if let Some(items) = items {
-        let mut meanings = items.iter().map(|item| item.click(place));
-        return meanings.find_map(|meaning| meaning).map(Target::Key);
+        return items
+            .iter()
+            .find_map(|item| item.click(at))
+            .map(Target::Message);
     }
     if let Some(page) = app.top_page() {
         // A narrow screen shows the matrix or the panel.
-        let hidden = page.slot() == Slot::Panel
+        let hidden = page.place() == Place::Panel
             && panes.panel.is_none()
             && app.narrow_pane == NarrowPane::Matrix;
         let area = status::page_area(app, &panes, page);
         if inside(area) && !hidden {
-            return page.click(area, place).map(Target::Page);
+            return page.click(area, at).map(Target::Message);
         }
         if !page.leaves_matrix() {
             return None;
         }
     }
-    let beside = panes.panel;
-    if beside.is_some_and(inside) {
-        return Some(Target::Panel);
-    }
     // On a small screen the descriptors may have the place of the matrix.
-    if beside.is_none() && app.narrow_pane == NarrowPane::Panel {
-        return inside(panes.content).then_some(Target::Panel);
+    let narrow = Some(panes.content).filter(|_| app.narrow_pane == NarrowPane::Panel);
+    let panel = panes.panel.or(narrow);
+    if panel.is_some_and(inside) {
+        return Some(Target::Message(Message::Region(1)));
     }
     let grid = app.grid().filter(|_| inside(panes.matrix))?;
     // Of two that share a character, the one with the cursor is meant, otherwise the upper one.

@@ -19,7 +19,7 @@ use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Slot {
+pub enum Place {
     /// Between the menu and the line of notices. It hides the lines about the matrix, too.
     Screen,
     Body,
@@ -30,22 +30,13 @@ pub enum Slot {
     Question,
 }
 
+/// How far a notch of the wheel scrolls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wheel {
-    Idle,
-    /// One step, where only the chosen item is visible: more would skip the items between.
-    Step,
-    Rows,
-}
-
-impl Wheel {
-    pub fn lines(self) -> Option<i16> {
-        match self {
-            Self::Idle => None,
-            Self::Step => Some(1),
-            Self::Rows => Some(3),
-        }
-    }
+    Idle = 0,
+    /// Where only the chosen item is visible: more would skip the items between.
+    Step = 1,
+    Rows = 3,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -104,10 +95,9 @@ pub struct Canvas<'a> {
 
 impl<'a> Canvas<'a> {
     pub(crate) fn of(app: &'a App, buffer: &'a mut Buffer) -> Self {
-        let (theme, keymap) = (&app.theme, app.keymap());
         Self {
-            theme,
-            keymap,
+            theme: &app.theme,
+            keymap: &app.keymap,
             buffer,
         }
     }
@@ -128,11 +118,11 @@ pub trait Page: Any {
 
     fn context(&self) -> Context;
 
-    fn slot(&self) -> Slot;
+    fn place(&self) -> Place;
 
     /// Prompts and questions stand in the line of notices, over the page below.
     fn has_pane(&self) -> bool {
-        !matches!(self.slot(), Slot::Prompt | Slot::Question)
+        !matches!(self.place(), Place::Prompt | Place::Question)
     }
 
     fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position>;
@@ -222,8 +212,8 @@ impl<Prompt: LinePrompt> Page for Prompt {
         Prompt::CONTEXT
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Prompt
+    fn place(&self) -> Place {
+        Place::Prompt
     }
 
     fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {

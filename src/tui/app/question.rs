@@ -4,7 +4,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::change::{from_prompt, refuse};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Act, Canvas, Flow, Page, Slot};
+use crate::tui::app::page::{Act, Canvas, Flow, Page, Place};
 use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::{Context, Keymap};
@@ -68,8 +68,8 @@ impl Page for Question {
         Context::Question
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Question
+    fn place(&self) -> Place {
+        Place::Question
     }
 
     fn draw(&self, _: Canvas<'_>, _: Rect) -> Option<Position> {

@@ -14,7 +14,7 @@ use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{History, StoredName};
 use crate::tui::app::message::Message;
 use crate::tui::app::mouse::Paint;
-use crate::tui::app::page::{Page, Slot, find, find_mut};
+use crate::tui::app::page::{Page, Place, find, find_mut};
 use crate::tui::app::view::Panes;
 use crate::tui::explore::results::Results;
 use crate::tui::form::{FormDialog, FormMemory};
@@ -95,11 +95,11 @@ pub enum RunState {
 
 /// A notice, shown until the next key.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Notice {
-    Info(String),
-    Refusal(String),
+pub struct Notice {
+    pub text: String,
+    pub is_refusal: bool,
     /// What is said before the next key stands after it.
-    Failure(String),
+    pub stays: bool,
 }
 
 /// A shape that is being saved, or that could not be saved before the program ended: the journal keeps it.
@@ -136,7 +136,7 @@ pub struct App {
     pub(crate) saving: Option<Saving>,
     pub(in crate::tui) results: Option<Box<Results>>,
     pub(in crate::tui) recognition: Recognition,
-    pub(in crate::tui) watch_settings: WatchRequest,
+    pub(crate) watch_settings: WatchRequest,
     pub(in crate::tui) live: Option<Box<Live>>,
     /// The number of sweeps and exports begun so far, which is also the number of the last one.
     pub(in crate::tui) works: u64,
@@ -150,8 +150,8 @@ pub struct App {
     pub(in crate::tui) pen: Option<bool>,
     pub(in crate::tui) paint: Option<Paint>,
     pub(in crate::tui) screen: (u16, u16),
-    pub(in crate::tui) theme: Theme,
-    pub(in crate::tui) keymap: Keymap,
+    pub theme: Theme,
+    pub keymap: Keymap,
     pub(in crate::tui) run_state: RunState,
     /// Each is named once.
     pub(in crate::tui) unknown_keys: Vec<Key>,
@@ -195,34 +195,15 @@ impl App {
         }
     }
 
-    #[must_use]
-    pub fn with_keymap(self, keymap: Keymap) -> Self {
-        Self { keymap, ..self }
-    }
-
-    #[must_use]
-    pub fn with_watch_settings(self, watch_settings: WatchRequest) -> Self {
-        Self {
-            watch_settings,
-            ..self
-        }
-    }
-
-    pub fn keymap(&self) -> &Keymap {
-        &self.keymap
-    }
-
     pub(in crate::tui) fn key_of(&self, action: &Action) -> String {
         self.keymap.label(Context::Matrix, action)
     }
 
     pub(in crate::tui) fn nothing_to_explore(&self) -> String {
-        let [figure, picture, draw] = [&action::FIGURE, &action::PICTURE, &action::TOGGLE];
+        let keys = [&action::FIGURE, &action::PICTURE, &action::TOGGLE];
+        let [figure, picture, draw] = keys.map(|action| self.key_of(action));
         format!(
-            "nothing to explore: {} places a figure, {} a stored shape, {} draws",
-            self.key_of(figure),
-            self.key_of(picture),
-            self.key_of(draw)
+            "nothing to explore: {figure} places a figure, {picture} a stored shape, {draw} draws"
         )
     }
 
@@ -306,8 +287,8 @@ impl App {
     /// beside the matrix.
     pub(crate) fn following(&mut self, change: impl FnOnce(&mut Self)) {
         let state = |app: &Self| {
-            let page = app.pane().map(Page::slot);
-            let accompanied = matches!(page, Some(Slot::Form | Slot::Panel));
+            let page = app.pane().map(Page::place);
+            let accompanied = matches!(page, Some(Place::Form | Place::Panel));
             // A small move changes the source, but may leave the same taxels active.
             let source = app.shown.source.clone();
             (app.cursor(), accompanied, source, app.reading.imprint)
@@ -335,10 +316,6 @@ impl App {
     pub(in crate::tui) fn body_size(&self) -> (u16, u16) {
         self.panes()
             .map_or((0, 0), |panes| panes.body.as_size().into())
-    }
-
-    pub(in crate::tui) fn results_below(&self) -> Option<&Results> {
-        self.page()
     }
 
     /// Returns the document that the matrix shows: the one that an open form would make, or the present one.
@@ -403,10 +380,6 @@ impl App {
 
     pub fn ended(&self) -> bool {
         self.run_state != RunState::Running
-    }
-
-    pub fn theme(&self) -> &Theme {
-        &self.theme
     }
 }
 

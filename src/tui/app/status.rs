@@ -19,21 +19,21 @@ use taxel_files::formats::value;
 use crate::tui::app::change::is_other;
 use crate::tui::app::document::Reading;
 use crate::tui::app::menu;
-use crate::tui::app::page::{Canvas, Page, Slot, find};
+use crate::tui::app::page::{Canvas, Page, Place, find};
 use crate::tui::app::question::Question;
-use crate::tui::app::state::{App, Notice};
+use crate::tui::app::state::App;
 use crate::tui::app::view::Panes;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::Context;
 use crate::tui::live::update::recording;
 use crate::tui::widget::theme::Role;
-use crate::tui::widget::write;
+use crate::tui::widget::write::{self, narrow};
 
 /// The text after the source if the shape is not wholly on the sensor. It is never shortened; the text before it is.
 const BEYOND: &str = "; reaches beyond the sensor";
 
 pub(crate) fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
-    let (theme, seen) = (app.theme(), app.reading());
+    let (theme, seen) = (&app.theme, app.reading());
     if !hides_matrix(app) {
         let beyond = if seen.beyond { BEYOND } else { "" };
         let room = usize::from(panes.source.width).saturating_sub(beyond.len());
@@ -42,7 +42,7 @@ pub(crate) fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Posi
         let source = write::fitted(&source, room, theme);
         let pieces = [&*source, beyond].map(|piece| (piece, Role::Text));
         write::line(buffer, panes.source, theme, pieces);
-        let in_form = app.pane().map(Page::slot) == Some(Slot::Form);
+        let in_form = app.pane().map(Page::place) == Some(Place::Form);
         let line = if in_form && panes.form_panel.is_none() {
             described(app, seen)
         } else {
@@ -52,7 +52,7 @@ pub(crate) fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Posi
     }
     menu::draw(theme, buffer, &menu::hints(app, panes));
     let top = app.top_page();
-    let prompt = top.filter(|page| page.slot() == Slot::Prompt);
+    let prompt = top.filter(|page| page.place() == Place::Prompt);
     let cursor = prompt.and_then(|page| {
         page.draw_over(theme, buffer, panes.body);
         page.draw(Canvas::of(app, buffer), panes.notice)
@@ -66,10 +66,10 @@ pub(crate) fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Posi
 }
 
 fn hides_matrix(app: &App) -> bool {
-    let mut slots = app.pages().filter(|page| page.has_pane()).map(Page::slot);
+    let mut slots = app.pages().filter(|page| page.has_pane()).map(Page::place);
     match slots.next_back() {
-        Some(Slot::Body) => slots.any(|slot| slot == Slot::Screen),
-        top => top == Some(Slot::Screen),
+        Some(Place::Body) => slots.any(|slot| slot == Place::Screen),
+        top => top == Some(Place::Screen),
     }
 }
 
@@ -154,11 +154,11 @@ fn taxel(app: &App, seen: &Reading) -> String {
 fn notice(app: &App, panes: &Panes, top: Option<&dyn Page>) -> Option<(String, Role)> {
     let last = app.pages.len().saturating_sub(1);
     if let Some(question) = find::<Question>(&app.pages[last..]) {
-        return Some((asked(app, panes, question), Role::Error));
+        return Some((asked(app, question), Role::Error));
     }
-    let notice = app.notice.as_ref().map(|notice| match notice {
-        Notice::Info(text) => (text.clone(), Role::Key),
-        Notice::Refusal(text) | Notice::Failure(text) => (format!("! {text}"), Role::Error),
+    let notice = app.notice.as_ref().map(|said| match said.is_refusal {
+        false => (said.text.clone(), Role::Key),
+        true => (format!("! {}", said.text), Role::Error),
     });
     let notice = notice.or_else(|| Some((app.jobs.waiting()?, Role::Key)));
     match (notice, top.and_then(Page::alarm)) {
@@ -167,39 +167,27 @@ fn notice(app: &App, panes: &Panes, top: Option<&dyn Page>) -> Option<(String, R
             let mark = if role == Role::Error { "" } else { "! " };
             Some((format!("{text}; {mark}{alarm}"), Role::Error))
         }
-        (notice, _) => notice.or_else(|| top?.remark(app.keymap(), panes.body)),
+        (notice, _) => notice.or_else(|| top?.remark(&app.keymap, panes.body)),
     }
 }
 
-/// Returns a question with its answers, after the notice. Where there is too little room, the notice is left out,
-/// then the sentences before the question: the answers are always there.
-fn asked(app: &App, panes: &Panes, question: &Question) -> String {
-    let end = format!("{} {}", question.text, question.answers(app.keymap()));
-    let start = match question.about.as_str() {
-        "" => end.clone(),
-        about => format!("{about} {end}"),
-    };
-    let room = panes.notice.bottom().saturating_sub(panes.body.y);
-    let fits = |text: &String| lines(app, panes, text) <= usize::from(room);
-    let said = app.notice.as_ref().map(|notice| match notice {
-        Notice::Info(said) | Notice::Refusal(said) | Notice::Failure(said) => {
-            format!("{said}. {start}")
-        }
-    });
-    said.into_iter().chain([start]).find(fits).unwrap_or(end)
-}
-
-fn lines(app: &App, panes: &Panes, text: &str) -> usize {
-    write::broken(&app.theme().text(text), usize::from(panes.notice.width)).len()
+/// Returns a question with its answers, after the notice.
+fn asked(app: &App, question: &Question) -> String {
+    let end = format!("{} {}", question.text, question.answers(&app.keymap));
+    let said = app.notice.as_ref().map(|said| format!("{}.", said.text));
+    let about = Some(question.about.clone()).filter(|about| !about.is_empty());
+    let sentences = [said, about, Some(end)].into_iter().flatten();
+    sentences.collect::<Vec<_>>().join(" ")
 }
 
 /// A prompt keeps its line, and the notice stands above it.
 fn block(app: &App, panes: &Panes, text: &str) -> Rect {
-    let is_typed = app.top_page().map(Page::slot) == Some(Slot::Prompt);
+    let is_typed = app.top_page().map(Page::place) == Some(Place::Prompt);
     let bottom = panes.notice.bottom() - u16::from(is_typed);
     let room = bottom.saturating_sub(panes.body.y).max(1);
-    let height = u16::try_from(lines(app, panes, text)).unwrap_or(room);
-    let height = height.clamp(1, room);
+    let text = app.theme.text(text);
+    let lines = write::broken(&text, usize::from(panes.notice.width)).len();
+    let height = narrow(lines).clamp(1, room);
     Rect {
         y: bottom - height,
         height,
@@ -209,7 +197,7 @@ fn block(app: &App, panes: &Panes, text: &str) -> Rect {
 
 /// Returns the place of a page, which may end above a notice of several lines.
 pub(crate) fn page_area(app: &App, panes: &Panes, page: &dyn Page) -> Rect {
-    let area = panes.area(page.slot());
+    let area = panes.area(page.place());
     if !page.makes_room() {
         return area;
     }
@@ -236,7 +224,7 @@ pub fn title(app: &App) -> String {
         is_recording.then(|| "recording".to_owned()),
     ];
     // In ASCII a dot would be an asterisk, and that is the mark of changes.
-    let between = if app.theme().ascii { ", " } else { " · " };
+    let between = if app.theme.ascii { ", " } else { " · " };
     parts
         .into_iter()
         .flatten()

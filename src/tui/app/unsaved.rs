@@ -107,32 +107,37 @@ fn losses(app: &App) -> Option<(String, &'static str)> {
     let lost = lost.filter(|document| !app.is_being_saved(document));
     let (present, earlier): (Vec<_>, Vec<_>) =
         lost.partition(|document| *document == app.history.present());
-    let history = app.key_of(&action::HISTORY);
-    Some(match (&present[..], &earlier[..]) {
+    let kind = |one: &Document| one.source.as_ref().map_or("drawing", Source::kind_name);
+    let (what, has, lose) = match (&present[..], &earlier[..]) {
         ([], []) => return None,
-        (_, []) => ("The imprint is not saved".to_owned(), "lose it"),
-        (present, [one]) => {
-            let kind = one.source.as_ref().map_or("drawing", Source::kind_name);
-            if present.is_empty() {
-                let text =
-                    format!("An earlier {kind} is not saved; the history ({history}) has it");
-                return Some((text, "lose it"));
-            }
-            let what = format!("The imprint and an earlier {kind} are not saved");
-            let text = format!("{what}; the history ({history}) has the {kind}");
-            (text, "lose them")
+        (_, []) => return Some(("The imprint is not saved".to_owned(), "lose it")),
+        ([], [one]) => {
+            let what = format!("An earlier {} is", kind(one));
+            (what, "it".to_owned(), "lose it")
+        }
+        (_, [one]) => {
+            let what = format!("The imprint and an earlier {} are", kind(one));
+            (what, format!("the {}", kind(one)), "lose them")
         }
         (present, earlier) => {
-            let count = counted(earlier.len() as u64, "earlier shape");
             let imprint = if present.is_empty() {
                 ""
             } else {
                 "The imprint and "
             };
-            let text = format!("{imprint}{count} are not saved; the history ({history}) has them");
-            (text, "lose them")
+            let count = counted(earlier.len() as u64, "earlier shape");
+            (
+                format!("{imprint}{count} are"),
+                "them".to_owned(),
+                "lose them",
+            )
         }
-    })
+    };
+    let history = app.key_of(&action::HISTORY);
+    Some((
+        format!("{what} not saved; the history ({history}) has {has}"),
+        lose,
+    ))
 }
 
 /// Offers the last unsaved work of programs that crashed, if there is any. No answer keeps it for the next start. While
@@ -157,10 +162,8 @@ pub fn offer(app: &mut App) {
         // A user who watches a sensor wants the keys of that page now, not those of a question.
         Some(below) => {
             app.pages.insert(below, Box::new(question));
-            inform(
-                app,
-                format!("{text} It is offered when this page is closed."),
-            );
+            let text = format!("{text} It is offered when this page is closed.");
+            inform(app, text);
         }
         None => app.open(question),
     }
@@ -174,21 +177,19 @@ fn recover(app: &mut App) {
     let shape = orphan.shape.clone();
     app.jobs.adopted.push(orphan);
     let document = Document::of_shape(&shape);
-    let origin = DocumentOrigin::unsaved(&document);
-    let origin = match shape.name.as_str() {
-        UNNAMED => {
-            let taxels = counted(shape.imprint.count(), "taxel");
-            origin.called(format!("{taxels} restored"))
-        }
+    let mut origin = DocumentOrigin::unsaved(&document);
+    origin.brought_by = Some(match shape.name.as_str() {
+        UNNAMED => format!("{} restored", counted(shape.imprint.count(), "taxel")),
         name => {
-            let proposed = match shipped::get(name) {
-                Some(_) => name_of_copy(name),
-                None => name.to_owned(),
-            };
-            let origin = origin.called(format!("{name} restored"));
-            origin.proposing(proposed)
+            let is_shipped = shipped::get(name).is_some();
+            origin.proposed = Some(if is_shipped {
+                name_of_copy(name)
+            } else {
+                name.to_owned()
+            });
+            format!("{name} restored")
         }
-    };
+    });
     resume(app, origin, document);
     let save = app.key_of(&action::SAVE);
     inform(app, format!("restored; {save} saves it"));
@@ -203,10 +204,8 @@ fn give_up(app: &mut App) {
         let thrown = throw_away(library, orphan);
         answer(|app| match thrown {
             Ok(name) => {
-                inform(
-                    app,
-                    format!("{name} is in the trash; :restore {name} brings it back"),
-                );
+                let text = format!("{name} is in the trash; :restore {name} brings it back");
+                inform(app, text);
                 offer(app);
             }
             Err(reason) => {

@@ -63,36 +63,29 @@ fn handle(app: &mut App, message: Message) {
 }
 
 /// Applies the answer of a job. A failure stays until the next key: what is said after it stands beside it, so that it
-/// can be read.
+/// can be read. If the request was refused, the prompt that it came from opens again: so the user can correct it, and
+/// the next keys do not reach the matrix. An answer without a notice leaves the old notice as it is.
 fn on_answer(app: &mut App, answer: Answer) {
-    let is_failure = |notice: &mut Notice| matches!(notice, Notice::Failure(_));
-    let unread = app.notice.take_if(is_failure);
-    let before = app.notice.clone();
-    answered(app, answer);
-    let is_new = app.notice != before;
-    app.notice = match (unread, app.notice.take()) {
-        (Some(Notice::Failure(first)), Some(Notice::Info(then) | Notice::Refusal(then)))
-            if !first.contains(&then) && first.len() < MOST_SAID =>
-        {
-            Some(Notice::Failure(format!("{first}; {then}")))
-        }
-        (None, Some(Notice::Refusal(reason))) if is_new => Some(Notice::Failure(reason)),
-        (unread, notice) => unread.or(notice),
-    };
-}
-
-/// Handles the answer to a request. If the request was refused, the prompt that it came from opens again: so the user
-/// can correct it, and the next keys do not reach the matrix. An answer without a notice leaves the old notice as it
-/// is.
-fn answered(app: &mut App, answer: Answer) {
-    let before = app.notice.clone();
+    let before = app.notice.take();
     answer(app);
-    match app.notice {
-        _ if app.notice == before => give_prompt(app),
+    match &app.notice {
         None => give_prompt(app),
-        Some(Notice::Info(_)) => app.prompt = None,
-        Some(Notice::Refusal(_) | Notice::Failure(_)) => app.pages.extend(app.prompt.take()),
+        Some(said) if said.is_refusal => app.pages.extend(app.prompt.take()),
+        Some(_) => app.prompt = None,
     }
+    app.notice = match (before, app.notice.take()) {
+        (Some(mut first), Some(then)) if first.stays => {
+            if !first.text.contains(&then.text) && first.text.len() < MOST_SAID {
+                first.text += &format!("; {}", then.text);
+            }
+            Some(first)
+        }
+        (_, Some(then)) => Some(Notice {
+            stays: then.is_refusal,
+            ..then
+        }),
+        (before, None) => before,
+    };
 }
 
 fn perform(app: &mut App, message: Message) {
@@ -149,7 +142,7 @@ fn unknown(app: &mut App, key: Key) {
     }
     app.unknown_keys.push(key);
     let here = app.context();
-    let label = |action| app.keymap().label(here, action);
+    let label = |action| app.keymap.label(here, action);
     let instead = if here == Context::Help {
         let scrolling = [
             &action::SCROLL_UP,
@@ -179,20 +172,29 @@ mod tests {
             update(app, Message::Answered);
             app.notice.clone()
         };
-        let failure = |text: &str| Some(Notice::Failure(text.to_owned()));
+        let notice = |text: &str, stays| {
+            Some(Notice {
+                text: text.to_owned(),
+                is_refusal: stays,
+                stays,
+            })
+        };
         let full = "a.json: no space left";
         for reason in [full, full] {
-            assert_eq!(after(&mut app, refuse, reason), failure(full));
+            assert_eq!(after(&mut app, refuse, reason), notice(full, true));
         }
         let both = "a.json: no space left; written: b.svg";
-        assert_eq!(after(&mut app, inform, "written: b.svg"), failure(both));
+        assert_eq!(
+            after(&mut app, inform, "written: b.svg"),
+            notice(both, true)
+        );
         // It does not grow without end.
         for number in 0..99 {
             after(&mut app, refuse, &format!("{number}: no space left"));
         }
-        let Some(Notice::Failure(text)) = after(&mut app, inform, "written: b.svg") else {
-            panic!("a failure");
-        };
+        let text = after(&mut app, inform, "written: b.svg")
+            .expect("said")
+            .text;
         assert!(
             text.starts_with(both) && text.len() < 2 * MOST_SAID,
             "{text}"
@@ -201,7 +203,7 @@ mod tests {
         assert_eq!(app.notice, None);
         // What the user is refused gives way to what is said next.
         update(&mut app, Message::Paste("text".to_owned()));
-        let said = Some(Notice::Info("written: b.svg".to_owned()));
-        assert_eq!(after(&mut app, inform, "written: b.svg"), said);
+        let said = "written: b.svg";
+        assert_eq!(after(&mut app, inform, said), notice(said, false));
     }
 }

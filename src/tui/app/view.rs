@@ -26,7 +26,7 @@ use ratatui::layout::{Position, Rect};
 use taxel_core::imprint::Imprint;
 
 use crate::tui::app::menu;
-use crate::tui::app::page::{Canvas, Page, Slot};
+use crate::tui::app::page::{Canvas, Page, Place};
 use crate::tui::app::state::{App, NarrowPane};
 use crate::tui::app::status::{self, title};
 use crate::tui::grid::{CellSize, RULER, beside_rulers};
@@ -36,36 +36,36 @@ use crate::tui::widget::write::{self, below, right_of};
 
 /// Returns the position of the terminal's cursor; None if it is hidden.
 pub fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
-    let (area, theme) = (buffer.area, app.theme());
+    let (area, theme) = (buffer.area, &app.theme);
     let Some(panes) = Panes::of(area, &app.reading().imprint, app.halves()) else {
         too_small(theme, buffer, area);
         return None;
     };
     menu::draw(theme, buffer, &menu::menu(app, panes.menu));
-    let (page, slot) = (app.pane(), app.pane().map(Page::slot));
-    if !matches!(slot, Some(Slot::Screen | Slot::Body)) {
+    let (page, slot) = (app.pane(), app.pane().map(Page::place));
+    if !matches!(slot, Some(Place::Screen | Place::Body)) {
         write::text(buffer, panes.title, theme, &title(app), Role::Text);
     }
     // A narrow screen shows one pane at a time.
     let sees = |pane| panes.panel.is_some() || app.narrow_pane == pane;
     let sees_matrix = match slot {
-        None | Some(Slot::Panel) => sees(NarrowPane::Matrix),
-        slot => slot == Some(Slot::Form),
+        None | Some(Place::Panel) => sees(NarrowPane::Matrix),
+        slot => slot == Some(Place::Form),
     };
     let mut cursor = None;
     if sees_matrix {
         cursor = matrix::view::draw(app, buffer, panes.matrix);
     }
     match (page, panes.form_panel) {
-        (None, _) if sees(NarrowPane::Panel) => panel::draw(app, buffer, panes.area(Slot::Panel)),
-        (Some(page), beside) if slot != Some(Slot::Panel) || sees(NarrowPane::Panel) => {
-            if let Some(beside) = beside.filter(|_| slot == Some(Slot::Form)) {
+        (None, _) if sees(NarrowPane::Panel) => panel::draw(app, buffer, panes.area(Place::Panel)),
+        (Some(page), beside) if slot != Some(Place::Panel) || sees(NarrowPane::Panel) => {
+            if let Some(beside) = beside.filter(|_| slot == Some(Place::Form)) {
                 panel::draw(app, buffer, beside);
             }
             let area = status::page_area(app, &panes, page);
             write::clear(buffer, area);
             let own = page.draw(Canvas::of(app, buffer), area);
-            cursor = own.or(cursor.filter(|_| slot == Some(Slot::Panel)));
+            cursor = own.or(cursor.filter(|_| slot == Some(Place::Panel)));
         }
         _ => {}
     }
@@ -151,16 +151,16 @@ impl Panes {
         })
     }
 
-    pub fn area(&self, slot: Slot) -> Rect {
+    pub fn area(&self, slot: Place) -> Rect {
         match slot {
-            Slot::Screen => Rect {
+            Place::Screen => Rect {
                 height: self.notice.y.saturating_sub(self.body.y),
                 ..self.body
             },
-            Slot::Body => self.body,
-            Slot::Form => self.form,
-            Slot::Panel => self.panel.unwrap_or(self.content),
-            Slot::Prompt | Slot::Question => self.notice,
+            Place::Body => self.body,
+            Place::Form => self.form,
+            Place::Panel => self.panel.unwrap_or(self.content),
+            Place::Prompt | Place::Question => self.notice,
         }
     }
 }

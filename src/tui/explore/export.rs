@@ -196,7 +196,7 @@ impl LinePrompt for ExportDialog {
 }
 
 fn write_to(app: &mut App, name: String) {
-    let Some(results) = app.results_below() else {
+    let Some(results) = app.page::<Results>() else {
         return;
     };
     let sweep = results.sweep();

@@ -251,7 +251,7 @@ fn next_zoom(results: &mut Results, app: &mut App) {
 }
 
 fn only_one(results: &Results, app: &mut App, what: &str) {
-    let ranges = app.keymap().label(results.tab().context, &action::RANGES);
+    let ranges = app.keymap.label(results.tab().context, &action::RANGES);
     refuse(
         app,
         format!("only one {what} was swept; {ranges} explores other ranges"),

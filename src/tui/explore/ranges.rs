@@ -21,7 +21,7 @@ use taxel_files::formats::value::{counted, time_in_words};
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Slot};
+use crate::tui::app::page::{Canvas, Flow, Page, Place};
 use crate::tui::app::state::App;
 use crate::tui::explore::name_of;
 use crate::tui::explore::work::{measure, sweep};
@@ -278,8 +278,8 @@ impl Page for RangesForm {
         Context::Ranges
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Form
+    fn place(&self) -> Place {
+        Place::Form
     }
 
     fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {

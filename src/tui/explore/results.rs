@@ -20,10 +20,10 @@ use taxel_core::sweep::SweepResult;
 use taxel_core::touch::Plane;
 use taxel_files::formats::value::{counted, grouped};
 
-use crate::tui::app::change::{change, compare_with, inform, let_go, refuse};
+use crate::tui::app::change::{change, compare_with, inform, refuse};
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Slot, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::explore::angles::AngleCurve;
 use crate::tui::explore::export::{ExportDialog, FilterDialog};
@@ -323,7 +323,7 @@ impl Results {
         let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(pose));
         let mut document = Document::touched(app.history.present().sensor, source);
         document.edits = Reading::of(&document).imprint.differing(&imprint);
-        let_go(app);
+        app.held = None;
         change(app, document);
         app.history.choose(None);
         let id = self.sweep().atlas.find(&imprint);
@@ -366,7 +366,7 @@ impl Results {
 const NOTHING_SELECTED: &str = "nothing is selected here";
 
 pub(super) fn tab_area(app: &App, results: &Results) -> Rect {
-    let area = app.panes().map(|panes| panes.area(results.slot()));
+    let area = app.panes().map(|panes| panes.area(results.place()));
     area.map_or(Rect::default(), |area| write::below(area, 2))
 }
 
@@ -415,8 +415,8 @@ impl Page for Results {
         self.tab().context
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Screen
+    fn place(&self) -> Place {
+        Place::Screen
     }
 
     fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {

@@ -22,7 +22,7 @@ use taxel_files::storage::{Existing, FileError, PoseFile, atlas_path, is_poses, 
 
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Slot};
+use crate::tui::app::page::{Canvas, Flow, Page, Place};
 use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, RunState};
 use crate::tui::explore::ranges::{RangesForm, about};
@@ -193,7 +193,7 @@ fn take_findings(app: &mut App, place: usize, findings: Arc<Findings>) {
 
 /// Writes the findings to a file. If one of that name exists, asks whether to replace it.
 pub(super) fn export(app: &mut App, name: String, existing: Existing) {
-    let Some(results) = app.results_below() else {
+    let Some(results) = app.page::<Results>() else {
         return;
     };
     let (found, is_filtered) = (Arc::clone(&results.findings), results.is_filtered());
@@ -338,8 +338,8 @@ impl Page for Running {
         Context::Running
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Body
+    fn place(&self) -> Place {
+        Place::Body
     }
 
     fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {

@@ -33,7 +33,7 @@ use taxel_files::storage::{
 use tempfile::TempDir;
 
 use crate::tui::app::change::refuse;
-use crate::tui::app::state::{App, Notice};
+use crate::tui::app::state::App;
 use crate::tui::app::unsaved::UnsavedWork;
 use crate::tui::explore::work::SweepProgress;
 use crate::tui::files::WriteAccess;
@@ -525,8 +525,8 @@ impl Jobs {
                 app.notice = None;
                 answer(app);
                 app.read();
-                if let Some(Notice::Refusal(reason)) = &app.notice {
-                    lines.push(format!("{reason}\n"));
+                if let Some(said) = app.notice.as_ref().filter(|said| said.is_refusal) {
+                    lines.push(format!("{}\n", said.text));
                 }
             }
             let works = app.unsaved_work();
@@ -670,12 +670,6 @@ mod tests {
     use crate::tui::app::state::Options;
     use crate::tui::app::update::update;
 
-    fn said(app: &App) -> Option<String> {
-        match app.notice.clone()? {
-            Notice::Info(text) | Notice::Refusal(text) | Notice::Failure(text) => Some(text),
-        }
-    }
-
     fn threaded() -> (App, Receiver<()>) {
         let (wake, woken) = channel();
         let wake = Mutex::new(wake);
@@ -703,7 +697,7 @@ mod tests {
             woken.recv().expect("an answer");
         }
         update(&mut app, Message::Redraw);
-        assert_eq!(said(&app).as_deref(), Some("the second"));
+        assert_eq!(app.notice.expect("said").text, "the second");
         assert!(!app.jobs.is_running(Slot::Sweep));
     }
 
@@ -725,6 +719,7 @@ mod tests {
         drop(go);
         woken.recv().expect("an answer");
         update(&mut app, Message::Redraw);
-        assert!(said(&app).is_some_and(|text| text.contains("this is a bug")));
+        let said = app.notice.expect("said").text;
+        assert!(said.contains("this is a bug"), "{said}");
     }
 }

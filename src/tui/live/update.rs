@@ -201,7 +201,7 @@ fn next_layer(app: &mut App, page: &mut Live) {
 fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
     let area = app.panes();
     let area = area.map(|panes| status::page_area(app, &panes, page));
-    match area.and_then(|area| view::beyond(page, app.theme(), area, towards)) {
+    match area.and_then(|area| view::beyond(page, &app.theme, area, towards)) {
         Some(next) => page.looked_at = Some(next),
         None => refuse(app, "no more taxels in this direction"),
     }
@@ -219,9 +219,10 @@ fn put_on_matrix(app: &mut App, page: &Live, document: Document) {
     let stem = source.rsplit_once('.').map_or(&*source, |(stem, _)| stem);
     let named = Name::new(&format!("{frame} of {stem}"));
     let proposed = named.map_or_else(|_| frame.clone(), |name| name.to_string());
-    let origin = DocumentOrigin::unsaved(&document)
-        .called(format!("imprint of {frame}, {source}"))
-        .proposing(proposed);
+    let origin = DocumentOrigin {
+        proposed: Some(proposed),
+        ..DocumentOrigin::unsaved(&document).called(format!("imprint of {frame}, {source}"))
+    };
     begin(app, origin, document);
     let back = app.key_of(&action::WATCH);
     let mut text = format!("the imprint of {frame}; {back} goes back to the source");
@@ -234,7 +235,7 @@ fn put_on_matrix(app: &mut App, page: &Live, document: Document) {
 fn refuse_imprint(app: &mut App, page: &Live) {
     let mut text = page.no_imprint();
     if page.reading.is_some() && page.rule().is_none() {
-        let key = app.keymap().label(Context::Live, &action::THRESHOLD_UP);
+        let key = app.keymap.label(Context::Live, &action::THRESHOLD_UP);
         text += &format!("; {key} sets one");
     }
     refuse(app, text);

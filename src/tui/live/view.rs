@@ -19,7 +19,7 @@ use taxel_files::formats::recording::FrameMark;
 use taxel_files::formats::value::{self, counted, fitting, grouped, measured};
 
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Slot, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
@@ -58,8 +58,8 @@ impl Page for Live {
         Context::Live
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Screen
+    fn place(&self) -> Place {
+        Place::Screen
     }
 
     fn cancels_itself(&self) -> bool {

@@ -37,7 +37,7 @@ impl Layers {
 }
 
 pub fn draw(app: &App, grid: &Grid, buffer: &mut Buffer) {
-    let (theme, reading) = (app.theme(), app.reading());
+    let (theme, reading) = (&app.theme, app.reading());
     let shown = |layer| Layers::shown(layer, grid);
     let region = reading.description(app.chosen());
     let region = region.filter(|_| shown(app.layers.rectangle));

@@ -23,7 +23,7 @@ const SYMBOL_AND_KEY: usize = 23;
 const NAME: usize = 18;
 
 pub fn draw(app: &App, buffer: &mut Buffer, area: Rect) {
-    let (theme, reading) = (app.theme(), app.reading());
+    let (theme, reading) = (&app.theme, app.reading());
     // The text after the title is plain like the values, so that little changes here when a taxel is toggled.
     let (title, which) = match reading.region(app.chosen()) {
         Some((index, region)) => {

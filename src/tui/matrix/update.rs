@@ -14,8 +14,8 @@ use taxel_files::formats::{Content, Drawing, ExportFormat, Name, value};
 use taxel_files::storage::{Existing, ShapeOrigin, UNNAMED};
 
 use crate::tui::app::change::{
-    begin, change, compare_with, hold, inform, let_go, movable, nudge, put_back, refuse, replace,
-    settle, shift, travel, turn, write_file, zoom,
+    begin, change, compare_with, hold, inform, movable, put_back, refuse, replace, settle, shift,
+    travel, turn, write_file, zoom,
 };
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{DocumentOrigin, History};
@@ -34,9 +34,10 @@ use crate::tui::keys::action;
 use crate::tui::keys::keymap::Context;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::prompt::{CommandDialog, NameDialog};
+use crate::tui::shapes::library;
 use crate::tui::shapes::list::open_list;
 use crate::tui::widget::write::around;
-use crate::tui::{explore, live, recognise, shapes};
+use crate::tui::{explore, live, recognise};
 
 /// Copied descriptors, the rectangle and the choice of a region all need a region, and show this notice if there is
 /// none.
@@ -55,7 +56,9 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) {
         Message::Explore(asked) => explore::work::act(app, asked),
         Message::Live(asked) => live::update::act(app, &asked),
         Message::Recognise(asked) => recognise::page::act(app, asked),
-        Message::Request(request) => shapes::library::act(app, request),
+        Message::SaveAs(name) => library::save(app, name, false),
+        Message::Named(purpose, name) => library::named(app, purpose, name),
+        Message::Restore(name) => library::restore(app, name),
         Message::Compare => compare_with_before(app),
         Message::Load => open_list(app, Purpose::Load),
         Message::Delete => open_list(app, Purpose::Delete),
@@ -89,10 +92,13 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) {
         Message::Display => next_display(app),
         Message::Layer(layer) => switch_layer(app, layer),
         Message::SwitchPane => switch_pane(app),
-        Message::Hold if app.held.is_some() => let_go(app),
+        Message::Hold if app.held.is_some() => app.held = None,
         Message::Hold => hold(app),
         Message::PutBack => put_back(app),
-        Message::Nudge(arrow) => nudge(app, arrow),
+        Message::Nudge(arrow) => {
+            let (dx, dy) = arrow.step();
+            shift(app, f64::from(dx) * app.step, f64::from(dy) * app.step);
+        }
         Message::Move(dx, dy) => shift(app, dx, dy),
         Message::Turn(degrees) => turn(app, degrees),
         Message::Zoom(direction) => zoom(app, direction),

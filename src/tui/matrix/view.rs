@@ -33,7 +33,7 @@ pub fn grid(app: &App, area: Rect) -> Grid {
 
 /// Returns the position of the cursor.
 pub fn draw(app: &App, buffer: &mut Buffer, area: Rect) -> Option<Position> {
-    let (theme, reading, grid) = (app.theme(), app.reading(), grid(app, area));
+    let (theme, reading, grid) = (&app.theme, app.reading(), grid(app, area));
     let chosen = reading.region(app.chosen()).map(|(_, region)| region);
     let compared = app.pane().and_then(Page::compared_with);
     let role = |column, row| role_of(reading, chosen, compared, column, row);
@@ -70,7 +70,7 @@ pub fn draw(app: &App, buffer: &mut Buffer, area: Rect) -> Option<Position> {
 /// it or on the ruler. A taxel of a single column is marked itself; of two that share a character, the other one is
 /// hidden.
 fn draw_cursor(app: &App, size: CellSize, buffer: &mut Buffer, place: Rect) -> Position {
-    let (theme, (column, row)) = (app.theme(), app.cursor());
+    let (theme, (column, row)) = (&app.theme, app.cursor());
     let before = u16::from(size == CellSize::Square(1));
     let y = place.y + (place.height - 1) / 2;
     let at = Position::new(place.x.saturating_sub(before), y);

@@ -24,7 +24,7 @@ use taxel_files::storage::ModelChoice;
 use crate::cli::arguments::flags::{one_of, parse_number};
 use crate::cli::arguments::parameters::{FigureFlags, RangeFlags, SensorFlags};
 use crate::tui::app::document::Document;
-use crate::tui::app::message::{LibraryRequest, Message, Purpose};
+use crate::tui::app::message::{Message, Purpose};
 use crate::tui::app::page::Page;
 use crate::tui::app::state::App;
 use crate::tui::explore::ExploreMessage;
@@ -251,13 +251,13 @@ impl Colon {
             }),
             Self::Restore { name } => {
                 let name = (!name.is_empty()).then(|| name_of(&name)).transpose()?;
-                Message::Request(LibraryRequest::Restore(name.map(|name| name.to_string())))
+                Message::Restore(name.map(|name| name.to_string()))
             }
             Self::Save { name } if name.is_empty() => Message::Save,
             Self::Save { .. } if app.reading().imprint.is_empty() => {
                 return Err("nothing to save: the matrix is empty".to_owned());
             }
-            Self::Save { name } => Message::Request(LibraryRequest::Save(name_of(&name)?)),
+            Self::Save { name } => Message::SaveAs(name_of(&name)?),
             Self::Seed { number } => Message::Recognise(RecogniseMessage::Seed(number)),
             Self::Sensor { flags } if flags.first().is_none() => Message::Sensor,
             Self::Sensor { flags } => {
@@ -279,8 +279,7 @@ fn shape(purpose: Purpose, words: &[String], otherwise: Message) -> Result<Messa
     if words.is_empty() {
         return Ok(otherwise);
     }
-    let name = name_of(words)?.to_string();
-    Ok(Message::Request(LibraryRequest::Named(purpose, name)))
+    Ok(Message::Named(purpose, name_of(words)?.to_string()))
 }
 
 fn name_of(words: &[String]) -> Result<Name, String> {

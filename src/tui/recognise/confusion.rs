@@ -22,7 +22,7 @@ use taxel_files::formats::value::{counted, grouped, percent};
 
 use crate::tui::app::change::{begin_drawn, refuse};
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Canvas, Flow, Page, Slot, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::grid::draw_thumbnail;
 use crate::tui::keys::keymap::Context;
@@ -147,8 +147,8 @@ impl Page for Confusion {
         Context::Confusion
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Screen
+    fn place(&self) -> Place {
+        Place::Screen
     }
 
     /// Returns the position of the cursor.

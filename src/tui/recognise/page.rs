@@ -11,9 +11,9 @@ use taxel_core::sensor::MatrixSize;
 use taxel_files::formats::Name;
 use taxel_files::storage::{ModelChoice, RememberedFile};
 
-use crate::tui::app::change::{begin_drawn, inform, let_go, refuse};
+use crate::tui::app::change::{begin_drawn, inform, refuse};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Slot};
+use crate::tui::app::page::{Canvas, Flow, Page, Place};
 use crate::tui::app::state::{App, NarrowPane};
 use crate::tui::jobs::{self, answer};
 use crate::tui::keys::action;
@@ -238,8 +238,8 @@ impl Page for RecognisePage {
         Context::Recognise
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Panel
+    fn place(&self) -> Place {
+        Place::Panel
     }
 
     fn draw(&self, _: Canvas<'_>, _: Rect) -> Option<Position> {
@@ -433,7 +433,7 @@ fn touch(app: &mut App, trained: &TrainedModel) {
         return;
     };
     begin_drawn(app, sensor, &imprint, "random touch");
-    let_go(app);
+    app.held = None;
     let undo = app.key_of(&action::UNDO);
     let name = trained.name(shape);
     inform(app, format!("a random touch of {name}; {undo} undoes it"));
@@ -470,5 +470,5 @@ fn close(app: &mut App) {
     app.jobs.forget(jobs::Slot::Poses);
     app.recognition.search.take_if(|(_, found)| found.is_none());
     app.narrow_pane = NarrowPane::Matrix;
-    let_go(app);
+    app.held = None;
 }

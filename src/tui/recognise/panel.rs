@@ -24,7 +24,7 @@ use taxel_core::pose::Axis;
 use taxel_files::formats::value::{counted, decimal, grouped, percent};
 
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, PoseLayer, Slot};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, PoseLayer};
 use crate::tui::app::state::App;
 use crate::tui::explore::work::gauge;
 use crate::tui::keys::action;
@@ -52,8 +52,8 @@ impl Page for Recognition {
         Context::Recognise
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Panel
+    fn place(&self) -> Place {
+        Place::Panel
     }
 
     fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {

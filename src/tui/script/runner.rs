@@ -436,7 +436,8 @@ pub fn run(
     let world = start.world(world);
     let world = world.map_err(|message| ScriptFailure::malformed(last_set, &message))?;
     let options = &start.options;
-    let app = App::new(&options.options).with_keymap(options.keymap.clone());
+    let mut app = App::new(&options.options);
+    app.keymap = options.keymap.clone();
     let mut runner = Runner {
         session: Session::of(app, world, options.size.0, options.size.1),
         options,

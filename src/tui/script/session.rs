@@ -22,7 +22,7 @@ use ratatui::style::{Color, Modifier};
 use taxel_files::formats::value::escaped;
 
 use crate::tui::app::message::Message;
-use crate::tui::app::state::{App, Notice, Options};
+use crate::tui::app::state::{App, Options};
 use crate::tui::app::unsaved::offer;
 use crate::tui::app::update::update;
 use crate::tui::app::view::draw;
@@ -88,7 +88,7 @@ impl Session {
             return Ok(());
         }
         Err(match &self.app.notice {
-            Some(Notice::Refusal(reason) | Notice::Failure(reason)) => reason.clone(),
+            Some(said) if said.is_refusal => said.text.clone(),
             _ => format!("{name}: no source can be watched on this page"),
         })
     }
@@ -149,7 +149,7 @@ impl Session {
     }
 
     pub fn svg(&self, title: &str) -> String {
-        svg(&self.drawn().0, *self.app.theme(), title)
+        svg(&self.drawn().0, *&self.app.theme, title)
     }
 
     fn rows(&self, add: impl Fn(&Cell, &mut String)) -> String {

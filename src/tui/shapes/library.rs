@@ -4,7 +4,6 @@ use std::io::ErrorKind;
 
 use rustix::fs::{Access, access};
 use rustix::io::Errno;
-use taxel_core::imprint::Imprint;
 use taxel_core::picture::Picture;
 use taxel_files::formats::{Name, StoredShape};
 use taxel_files::storage::{Expected, Library, LibraryError, LoadedShape, ShapeOrigin};
@@ -12,21 +11,13 @@ use taxel_files::storage::{Expected, Library, LibraryError, LoadedShape, ShapeOr
 use crate::tui::app::change::{begin, compare_with, inform, refuse};
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{DocumentOrigin, StoredName};
-use crate::tui::app::message::{LibraryRequest, Purpose};
+use crate::tui::app::message::Purpose;
 use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, Saving};
 use crate::tui::app::unsaved::quit;
 use crate::tui::form::FormDialog;
 use crate::tui::jobs::{answer, caught};
 use crate::tui::keys::action;
-
-pub(crate) fn act(app: &mut App, request: LibraryRequest) {
-    match request {
-        LibraryRequest::Save(name) => save(app, name, false),
-        LibraryRequest::Named(purpose, name) => named(app, purpose, name),
-        LibraryRequest::Restore(name) => restore(app, name),
-    }
-}
 
 /// Does with the shape of that name what it was chosen for.
 pub(crate) fn named(app: &mut App, purpose: Purpose, name: String) {
@@ -42,8 +33,9 @@ fn load(app: &mut App, purpose: Purpose, name: String) {
         let loaded = loaded.map_err(|error| sentence(library, &error));
         answer(move |app| match (loaded, purpose) {
             (Ok(loaded), Purpose::Picture) => {
-                let shape = &loaded.shape;
-                open_picture(app, &shape.imprint, shape.name.to_string());
+                let name = loaded.shape.name.to_string();
+                let picture = Picture::at_home(loaded.shape.imprint).named(&name);
+                app.open(FormDialog::picture(app.history.present(), picture, name));
             }
             (Ok(loaded), Purpose::Compare) => {
                 compare_with(app, loaded.shape.name.as_str(), &loaded.shape.imprint);
@@ -52,12 +44,6 @@ fn load(app: &mut App, purpose: Purpose, name: String) {
             (Err(reason), _) => refuse(app, reason),
         })
     });
-}
-
-fn open_picture(app: &mut App, imprint: &Imprint, name: String) {
-    let picture = Picture::at_home(*imprint).named(&name);
-    let form = FormDialog::picture(app.history.present(), picture, name);
-    app.open(form);
 }
 
 /// Brings a shape onto the matrix: with its sensor and source if that sensor has the same number of columns and rows,
@@ -82,7 +68,8 @@ fn put_on_matrix(app: &mut App, loaded: &LoadedShape) {
     // A shape for a sensor of another size becomes another shape: it is not stored under that name.
     let mut origin = DocumentOrigin::of(&document);
     if own == here {
-        origin = origin.loaded(StoredName {
+        origin = origin.called(format!("{} loaded", shape.name));
+        origin.name = Some(StoredName {
             name: shape.name.to_string(),
             stamp: loaded.stamp,
             owner: loaded.origin,
@@ -103,8 +90,7 @@ fn ask_to_delete(app: &mut App, name: String) {
             answer(|app| match found {
                 Ok(name) => {
                     let text = format!("Delete {name:?}?");
-                    let question = Question::new("", text, move |app| delete(app, name));
-                    app.open(question);
+                    app.open(Question::new("", text, |app| delete(app, name)));
                 }
                 Err(reason) => refuse(app, reason),
             })
@@ -119,17 +105,15 @@ fn delete(app: &mut App, name: String) {
             Ok(name) => {
                 // The matrix may show the only copy that is left.
                 app.history.removed(&name);
-                inform(
-                    app,
-                    format!("{name} deleted; :restore {name} brings it back"),
-                );
+                let text = format!("{name} deleted; :restore {name} brings it back");
+                inform(app, text);
             }
             Err(reason) => refuse(app, reason),
         })
     });
 }
 
-fn restore(app: &mut App, name: Option<String>) {
+pub(crate) fn restore(app: &mut App, name: Option<String>) {
     let what = name.as_deref().unwrap_or("a shape");
     app.jobs.disk(format!("Restoring {what}"), move |library| {
         let restored = library.restore(name.as_deref());
@@ -168,30 +152,37 @@ enum Stored {
 }
 
 fn store(app: &mut App, saving: Saving, expected: Expected) {
-    let shape = saving.shape.clone();
+    let (shape, what) = (
+        saving.shape.clone(),
+        format!("Saving {}", saving.shape.name),
+    );
     app.saving = Some(saving);
-    app.jobs
-        .disk(format!("Saving {}", shape.name), move |library| {
-            let stored = caught(|| stored(library, &shape, expected));
-            let stored = stored.unwrap_or_else(Stored::Not);
-            answer(|app| on_stored(app, stored))
-        });
+    app.jobs.disk(what, move |library| {
+        let stored = caught(|| stored(library, &shape, expected));
+        let stored = stored.unwrap_or_else(Stored::Not);
+        answer(|app| on_stored(app, stored))
+    });
 }
 
 fn stored(library: &Library, shape: &StoredShape, expected: Expected) -> Stored {
-    match library.save(shape, expected) {
-        Ok(stamp) => Stored::As(stamp),
-        Err(error) if says_read_only(library, &error) => Stored::Not(format!(
+    let error = match library.save(shape, expected) {
+        Ok(stamp) => return Stored::As(stamp),
+        Err(error) => error,
+    };
+    if says_read_only(library, &error) {
+        return Stored::Not(format!(
             "not saved: {READ_ONLY}; :write FILE saves elsewhere"
-        )),
-        Err(
-            ref error @ (LibraryError::Exists { stamp, .. } | LibraryError::Changed { stamp, .. }),
-        ) => Stored::Differs(stamp, error.to_string()),
-        Err(LibraryError::Shipped(name)) => {
-            let text = "is the name of a shipped shape; choose another";
-            Stored::Not(format!("{name} {text}"))
+        ));
+    }
+    let reason = error.to_string();
+    match error {
+        LibraryError::Exists { stamp, .. } | LibraryError::Changed { stamp, .. } => {
+            Stored::Differs(stamp, reason)
         }
-        Err(error) => Stored::Not(error.to_string()),
+        LibraryError::Shipped(name) => Stored::Not(format!(
+            "{name} is the name of a shipped shape; choose another"
+        )),
+        _ => Stored::Not(reason),
     }
 }
 
@@ -199,9 +190,9 @@ fn on_stored(app: &mut App, stored: Stored) {
     let Some(saving) = app.saving.take() else {
         return;
     };
-    let name = saving.shape.name.to_string();
     match stored {
         Stored::As(stamp) => {
+            let name = saving.shape.name.to_string();
             inform(app, format!("saved as {name}"));
             let name = StoredName {
                 name,
@@ -232,7 +223,7 @@ fn not_saved(app: &mut App, saving: Saving, reason: String) {
 fn ask_to_replace(app: &mut App, saving: Saving, stamp: u64, reason: String) {
     let own = app.history.origins.get(saving.origin);
     let own = own.and_then(|origin| origin.name.as_ref());
-    let own = own.filter(|own| own.owner == ShapeOrigin::Own && saving.shape.name.same(&own.name));
+    let own = own.filter(|own| own.is_own() && saving.shape.name.same(&own.name));
     let reason = match own.filter(|own| own.stamp != stamp) {
         Some(own) => {
             let name = own.name.clone();
@@ -244,8 +235,7 @@ fn ask_to_replace(app: &mut App, saving: Saving, stamp: u64, reason: String) {
         return not_saved(app, saving, reason);
     }
     let yes = move |app: &mut App| store(app, saving, Expected::Stamp(stamp));
-    let question = Question::new(format!("{reason}."), "Replace it?", yes);
-    app.open(question);
+    app.open(Question::new(format!("{reason}."), "Replace it?", yes));
 }
 
 /// Why nothing in the library can be changed.
