@@ -139,7 +139,6 @@ impl<'a> HeatMap<'a> {
             [upper, lower] if lower > upper || upper.is_nan() => lower,
             [upper, _] => upper,
         };
-        let shade = self.shade(larger);
         let style = style(self.theme, larger);
         let imprint = self.reading.imprint.as_ref();
         let shown = imprint.filter(|_| self.layer == HeatLayer::Imprint);
@@ -150,15 +149,14 @@ impl<'a> HeatMap<'a> {
             (self.theme.half(upper, lower), self.theme.style(role))
         } else if self.is_beside(column, row) {
             (edge(self.theme), style)
-        } else if has_halves(self.theme) {
-            match shares.map(|share| color(self.theme, share)) {
+        } else {
+            let halves = has_halves(self.theme);
+            match shares.map(|share| color(self.theme, share).filter(|_| halves)) {
                 [Some(upper), Some(lower)] => ('▀', Style::new().fg(upper).bg(lower)),
                 [Some(upper), None] => ('▀', Style::new().fg(upper)),
                 [None, Some(lower)] => ('▄', Style::new().fg(lower)),
-                [None, None] => (shade, style),
+                [None, None] => (self.shade(larger), style),
             }
-        } else {
-            (shade, style)
         };
         Look {
             signs: [sign; 2],

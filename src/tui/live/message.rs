@@ -51,7 +51,7 @@ pub enum LiveMessage {
 pub struct NamedSource {
     /// The words of the name: a path, `tcp://HOST:PORT`, or `-` for standard input.
     #[arg(value_name = "SOURCE")]
-    name: Vec<String>,
+    pub(crate) name: Vec<String>,
     #[command(flatten)]
     flags: WatchFlags,
 }
@@ -69,10 +69,6 @@ impl NamedSource {
             name: vec![name.into()],
             ..Self::default()
         }
-    }
-
-    pub fn is_unnamed(&self) -> bool {
-        self.name.is_empty()
     }
 
     pub fn source(&self) -> FrameSource {

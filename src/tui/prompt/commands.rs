@@ -268,7 +268,7 @@ impl Colon {
             }
             Self::Size { size } => Message::Live(LiveMessage::Size(size)),
             Self::Turn { degrees } => Message::Turn(degrees),
-            Self::Watch { source } if source.is_unnamed() => Message::Live(LiveMessage::Open),
+            Self::Watch { source } if source.name.is_empty() => Message::Live(LiveMessage::Open),
             Self::Watch { source } => Message::Live(LiveMessage::Source(Box::new(source))),
             Self::Write { file } => Message::WriteFile(file.join(" ")),
         })

@@ -223,23 +223,20 @@ const COMMANDS: [Command; 19] = [
         let (at, name) = two(text, "a style")?;
         let (column, row) = position(at)?;
         let style = STYLES.iter().find(|(style, _)| *style == name);
-        let unknown = || {
-            format!(
-                "style {}",
-                unknown_name(name, &STYLES.map(|(name, _)| name))
-            )
-        };
-        let (expected, letter) = *style.ok_or_else(unknown)?;
+        let (expected, letter) = *style.ok_or_else(|| {
+            let names = STYLES.map(|(name, _)| name);
+            format!("style {}", unknown_name(name, &names))
+        })?;
         expect(move |session| {
             let index = character_at(line_of(&session.screen(), row), column);
             let found = line_of(&session.styles(), row).chars().nth(index);
             let style = STYLES.iter().find(|(_, own)| Some(*own) == found);
-            (found != Some(letter)).then(|| match style {
-                Some((found, _)) => {
-                    format!("at {column},{row} the style is {found}, expected {expected}")
-                }
-                None => format!("{column},{row} is not on the screen, expected {expected}"),
-            })
+            let found = match style {
+                Some((_, own)) if *own == letter => return None,
+                Some((found, _)) => format!("at {column},{row} the style is {found}"),
+                None => format!("{column},{row} is not on the screen"),
+            };
+            Some(format!("{found}, expected {expected}"))
         })
     }),
     ("ExpectScreen", |name| {
@@ -257,10 +254,8 @@ const COMMANDS: [Command; 19] = [
             if found == count {
                 return Ok(());
             }
-            let (expected, why) = (
-                counted(count as u64, "frame"),
-                runner.session.end_of_frames(),
-            );
+            let expected = counted(count as u64, "frame");
+            let why = runner.session.end_of_frames();
             Err(format!("expected {expected}, found {found}: {why}").into())
         })
     }),
