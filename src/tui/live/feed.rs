@@ -36,8 +36,8 @@ pub struct FrameBatch {
 #[derive(Clone, Debug, Default)]
 pub struct FeedStatus {
     pub state: SourceState,
-    /// The channel that is watched; None until it is known.
-    pub channel: Option<Arc<ChannelInfo>>,
+    /// The channel that is watched; without any content until it is known.
+    pub channel: Arc<ChannelInfo>,
     /// The number of channels; 0 for a stream.
     pub channels: usize,
     /// Whether the source is a recording that is still being written.
@@ -293,7 +293,7 @@ impl Feed {
                 let status = &mut pending.batch.status;
                 status.channels = pending.channels.names().len();
                 if is_chosen {
-                    status.channel = Some(Arc::new(info.clone()));
+                    status.channel = Arc::new(info.clone());
                 }
             }),
             AcquireEvent::Frame { frame, time } => self.take_frame(frame, time),
@@ -509,8 +509,7 @@ mod tests {
         let batch = feed.take().expect("a frame");
         let channels = batch.frames.iter().map(|frame| frame.channel);
         assert_eq!(channels.collect::<Vec<_>>(), [1]);
-        let channel = batch.status.channel.expect("the one that is asked for");
-        let name = channel.name.as_deref();
+        let name = batch.status.channel.name.as_deref();
         assert_eq!((name, batch.status.channels), (Some("right"), 2));
     }
 

@@ -8,7 +8,6 @@ use taxel_core::imprint::Imprint;
 use taxel_core::matrix::Matrix;
 use taxel_core::parameter::Parameter;
 use taxel_core::sensor::Sensor;
-use taxel_files::formats::recording::ChannelInfo;
 
 use crate::tui::app::document::Document;
 use crate::tui::live::state::Live;
@@ -21,6 +20,7 @@ pub enum HeatLayer {
 }
 
 impl HeatLayer {
+    #[must_use]
     pub fn next(self) -> Self {
         match self {
             Self::Raw => Self::Tared,
@@ -208,8 +208,7 @@ impl ShadeRange {
 pub fn document(page: &Live) -> Option<Document> {
     let imprint = page.reading.as_ref()?.imprint?;
     let sensor = Sensor::of_size(imprint.size());
-    let channel = page.status.channel.as_deref();
-    let pitch = channel.and_then(ChannelInfo::square_pitch_mm);
+    let pitch = page.status.channel.square_pitch_mm();
     let scaled = pitch.and_then(|pitch| sensor.with(Parameter::Pitch, pitch).ok());
     Some(Document::drawn(scaled.unwrap_or(sensor), imprint))
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use taxel_core::frame::{Frame, FrameError, Rule, RuleOrigin, SetRule};
+use taxel_core::frame::{Frame, FrameError, Label, Rule, RuleOrigin, SetRule};
 use taxel_files::acquire::FrameSource;
 use taxel_files::formats::recording::{FrameMark, RecordedView};
 
@@ -46,8 +46,8 @@ pub struct Live {
     /// The frames marked by key, in order: the number in the history, and what identifies the frame in its source.
     pub(crate) marks: Vec<(u64, FrameMark)>,
     pub trend: Trend,
-    /// Whether contact instead of force is plotted over the history.
-    pub plots_contact: bool,
+    /// What is plotted over the history: force, 0, or contact, 1.
+    pub plotted: usize,
     pub names: ShapeNames,
     /// The shown frame, processed; None before the first frame, and for a frame that cannot be processed.
     pub reading: Option<LiveReading>,
@@ -77,7 +77,7 @@ impl Live {
             recording: RecordingState::default(),
             marks: Vec::new(),
             trend: Trend::default(),
-            plots_contact: false,
+            plotted: 0,
             names: ShapeNames::new(&request),
             reading: None,
             error: None,
@@ -141,11 +141,6 @@ impl Live {
         (!troubles.is_empty()).then(|| troubles.join("; "))
     }
 
-    /// Returns the labels of the frames that were marked while this recording was made.
-    pub fn recorded_marks(&self) -> &[FrameMark] {
-        (self.status.channel.as_deref()).map_or(&[], |channel| &channel.marks)
-    }
-
     /// Returns threshold, tare and the marks of recorded frames, if frames are recorded and any of these has changed.
     /// They count as written afterwards.
     pub fn take_changed_view(&mut self) -> Option<RecordedView> {
@@ -161,8 +156,8 @@ impl Live {
 
     pub fn is_marked(&self) -> bool {
         self.history.shown().is_some_and(|(number, frame)| {
-            let label = frame.label.as_ref().and_then(|label| label.number());
-            let mut recorded = self.recorded_marks().iter();
+            let label = frame.label.as_ref().and_then(Label::number);
+            let mut recorded = self.status.channel.marks.iter();
             self.marks.iter().any(|(own, _)| *own == number)
                 || recorded.any(|mark| label.is_some() && i64::try_from(mark.number).ok() == label)
         })
@@ -192,8 +187,7 @@ impl Live {
 
     /// Returns the unit of the values, with a space before it; empty if it is not known.
     pub fn unit(&self) -> String {
-        let channel = self.status.channel.as_deref();
-        let unit = channel.and_then(|channel| channel.unit.as_deref());
+        let unit = self.status.channel.unit.as_ref();
         unit.map_or(String::new(), |unit| format!(" {unit}"))
     }
 
@@ -209,18 +203,18 @@ impl Live {
         if matches!(self.status.state, SourceState::Silent(_)) {
             return None;
         }
-        let step = (self.status.channel.as_deref()).and_then(|channel| channel.seconds_per_frame);
+        let step = self.status.channel.seconds_per_frame;
         let stated = step.filter(|step| *step > 0.0).map(f64::recip);
         self.history.rate().or(stated)
     }
 
     pub fn take(&mut self, batch: &FrameBatch) {
-        let had_channel = self.status.channel.is_some();
-        self.status = batch.status.clone();
+        let before = std::mem::replace(&mut self.status, batch.status.clone()).channel;
         if let Some(error) = self.status.record_error.clone() {
             self.fail_recording(error);
         }
-        if !had_channel && let Some(channel) = self.status.channel.clone() {
+        let channel = Arc::clone(&self.status.channel);
+        if !Arc::ptr_eq(&before, &channel) {
             self.repipe(|pipeline| pipeline.begin(&channel));
         }
         for frame in &batch.frames {

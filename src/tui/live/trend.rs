@@ -70,14 +70,11 @@ impl Trend {
 /// Draws the bars, with the column of a frozen frame reversed.
 pub fn draw(live: &Live, theme: &Theme, buffer: &mut Buffer, area: Rect) {
     let next = live.history.numbers().end;
-    let (columns, first, each) = live
-        .trend
-        .columns(live.plots_contact.into(), next, area.width);
+    let (columns, first, each) = live.trend.columns(live.plotted, next, area.width);
     let top = round_up(columns.iter().copied().fold(0.0, f64::max));
-    let (name, unit) = if live.plots_contact {
-        ("contact", " taxels".to_owned())
-    } else {
-        ("force", live.unit())
+    let (name, unit) = match live.plotted {
+        0 => ("force", live.unit()),
+        _ => ("contact", " taxels".to_owned()),
     };
     let scale = format!("  0 to {}{unit}", measured(top, 9));
     let pieces = [(name, Role::Key), (&*scale, Role::Quiet)];

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use taxel_core::frame::{FrameSize, Rule};
 use taxel_files::acquire::FrameSource;
 use taxel_files::formats::Name;
-use taxel_files::formats::recording::{ChannelInfo, RecordingMetadata};
+use taxel_files::formats::recording::RecordingMetadata;
 use taxel_files::formats::value::counted;
 
 use crate::tui::app::change::{begin, inform, refuse};
@@ -139,7 +139,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) {
             page.read();
         }
         LiveMessage::NextLayer => next_layer(app, page),
-        LiveMessage::Plot => page.plots_contact ^= true,
+        LiveMessage::Plot => page.plotted ^= 1,
         LiveMessage::Numbers => page.numbers ^= true,
         LiveMessage::OwnRange => {
             page.range.is_own ^= true;
@@ -211,8 +211,7 @@ fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
 /// the same frame again. If the recording gives the size of its cells but lengths are not in mm, the notice says why.
 fn put_on_matrix(app: &mut App, page: &Live, document: Document) {
     let number = page.reading.as_ref().map(|reading| reading.frame.number);
-    let channel = page.status.channel.as_deref();
-    let without_mm = channel.and_then(ChannelInfo::why_not_in_mm);
+    let without_mm = page.status.channel.why_not_in_mm();
     let source = page.request.name();
     let frame = number.map_or("a frame".to_owned(), |number| format!("frame {number}"));
     // Not every source has a name that a shape may have.
@@ -260,14 +259,14 @@ fn record(app: &mut App, page: &mut Live) {
         return refuse(app, "the source has ended, so there is nothing to record");
     }
     page.recording.from = page.history.numbers().end;
-    let channel = page.status.channel.as_deref();
+    let channel = &page.status.channel;
     let metadata = RecordingMetadata {
         source: page.request.source.name(),
-        unit: channel.and_then(|channel| channel.unit.clone()),
-        pitch_mm: channel.and_then(|channel| channel.pitch_mm),
+        unit: channel.unit.clone(),
+        pitch_mm: channel.pitch_mm,
         rule: page.rule(),
         tare: page.pipeline.processing.tare.clone(),
-        seconds_per_frame: channel.and_then(|channel| channel.seconds_per_frame),
+        seconds_per_frame: channel.seconds_per_frame,
         ..RecordingMetadata::default()
     };
     source::record(app, metadata);

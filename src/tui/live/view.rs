@@ -207,7 +207,7 @@ fn marked(live: &Live) -> Option<String> {
         (!numbers.is_empty()).then(|| format!("{what} {}", numbers.join(", ")))
     };
     let own = text("frame", &mut live.marks.iter().map(|(_, mark)| mark));
-    let recorded = text("label", &mut live.recorded_marks().iter());
+    let recorded = text("label", &mut live.status.channel.marks.iter());
     let texts: Vec<String> = own.into_iter().chain(recorded).collect();
     (!texts.is_empty()).then(|| texts.join("; "))
 }
@@ -292,17 +292,14 @@ fn tare(live: &Live) -> String {
     };
     let frames = counted(origin.frames, "frame");
     let shown = live.reading.as_ref().map(|reading| &reading.frame);
-    let age = shown
-        .zip(origin.last)
-        .and_then(|(frame, (number, time))| match (frame.time, time) {
-            (Some(now), Some(then)) => {
-                (now > then).then(|| format!("{} s ago", value::decimal(now - then, 1)))
-            }
-            _ => {
-                let frames = frame.number.checked_sub(number)?;
-                Some(format!("{} ago", counted(frames, "frame")))
-            }
-        });
+    let age = shown.zip(origin.last);
+    let age = age.and_then(|(frame, (number, time))| {
+        if let (Some(now), Some(then)) = (frame.time, time) {
+            return (now > then).then(|| format!("{} s ago", value::decimal(now - then, 1)));
+        }
+        let frames = frame.number.checked_sub(number)?;
+        Some(format!("{} ago", counted(frames, "frame")))
+    });
     age.map_or(frames.clone(), |age| format!("{frames}, {age}"))
 }
 
@@ -354,10 +351,7 @@ fn of_state(live: &Live) -> Vec<(String, Role)> {
     let mut pieces = Vec::new();
     let mut say = |text: String, role| pieces.push((text, role));
     let status = &live.status;
-    let channel = status.channel.as_deref();
-    if let Some(name) = channel.and_then(|own| own.name.as_deref())
-        && status.channels > 1
-    {
+    if let Some(name) = status.channel.name.as_ref().filter(|_| status.channels > 1) {
         say(format!("channel {name} of {}", status.channels), Role::Text);
     }
     let shown = || live.history.shown().map(|(_, frame)| frame);
