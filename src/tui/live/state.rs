@@ -55,8 +55,6 @@ pub struct Live {
     error: Option<FrameError>,
     /// Why a requested tare is missing.
     tare_error: Option<FrameError>,
-    /// Whether threshold, tare or marks have changed since they were last written into a recording.
-    is_view_changed: bool,
 }
 
 impl Live {
@@ -82,7 +80,6 @@ impl Live {
             reading: None,
             error: None,
             tare_error: None,
-            is_view_changed: false,
             request,
             number,
         }
@@ -147,7 +144,7 @@ impl Live {
         self.recording.name.as_ref()?;
         let own = self.marks.iter();
         let own = own.filter(|(number, _)| *number >= self.recording.from);
-        std::mem::take(&mut self.is_view_changed).then(|| RecordedView {
+        std::mem::take(&mut self.recording.is_view_changed).then(|| RecordedView {
             rule: self.rule(),
             tare: self.pipeline.processing.tare.clone(),
             marks: own.map(|(_, mark)| *mark).collect(),
@@ -167,7 +164,7 @@ impl Live {
     /// None before the first frame.
     pub fn mark(&mut self) -> Option<(u64, bool)> {
         let (number, frame) = self.history.shown()?;
-        self.is_view_changed = true;
+        self.recording.is_view_changed = true;
         let index = self.marks.binary_search_by_key(&number, |own| own.0);
         match index {
             Ok(index) => drop(self.marks.remove(index)),
@@ -253,7 +250,7 @@ impl Live {
 
     /// Measures the last frames again, because the tare or the threshold has changed.
     fn measure_again(&mut self) {
-        self.is_view_changed = true;
+        self.recording.is_view_changed = true;
         self.trend.0.clear();
         let frames: Vec<_> = self.history.newest_first().take(RANGED).cloned().collect();
         for frame in frames.iter().rev() {
@@ -496,4 +493,6 @@ pub struct RecordingState {
     pub refusal: Option<String>,
     /// Why the recording that was requested together with the source has failed. Later recordings do not change that.
     pub write_failure: Option<String>,
+    /// Whether threshold, tare or marks have changed since they were last written into a recording.
+    is_view_changed: bool,
 }

@@ -149,7 +149,7 @@ impl Session {
     }
 
     pub fn svg(&self, title: &str) -> String {
-        svg(&self.drawn().0, *&self.app.theme, title)
+        svg(&self.drawn().0, self.app.theme, title)
     }
 
     fn rows(&self, add: impl Fn(&Cell, &mut String)) -> String {
