@@ -40,7 +40,7 @@ impl Explain {
         };
         let chosen = app
             .page::<Results>()
-            .map(|results| results.feature().descriptor.key);
+            .map(|results| results.chosen.feature().descriptor.key);
         let is_chosen = |own: &Descriptor| Some(own.key) == chosen;
         Self {
             descriptor: DESCRIPTORS.iter().position(is_chosen).unwrap_or(0),

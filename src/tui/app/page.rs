@@ -101,6 +101,20 @@ impl<'a> Canvas<'a> {
             buffer,
         }
     }
+
+    /// Writes into the first line of an area; what does not fit is cut short.
+    pub(crate) fn text(&mut self, area: Rect, text: &str, role: Role) {
+        write::text(self.buffer, area, self.theme, text, role);
+    }
+
+    /// The same with pieces in several roles.
+    pub(crate) fn line<'b>(
+        &mut self,
+        area: Rect,
+        pieces: impl IntoIterator<Item = (&'b str, Role)>,
+    ) {
+        write::line(self.buffer, area, self.theme, pieces);
+    }
 }
 
 /// One place of the screen: what its keys do and what it shows.

@@ -2,8 +2,6 @@
 
 use std::borrow::Cow;
 
-use ratatui::layout::Rect;
-use taxel_core::atlas::{AtlasFilter, FilterError};
 use taxel_core::quote::{joined, shortened};
 use taxel_files::formats::file::has_ending;
 use taxel_files::formats::value::grouped;
@@ -13,6 +11,7 @@ use crate::tui::app::change::{inform, refuse, write_file};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Flow, LinePrompt};
 use crate::tui::app::state::App;
+use crate::tui::explore::imprints::ImprintList;
 use crate::tui::explore::name_of;
 use crate::tui::explore::results::{Results, TABS, tab_area};
 use crate::tui::explore::work::export;
@@ -24,30 +23,23 @@ const LONGEST_FILTER: usize = 200;
 /// The prompt for a filter. The list follows what is typed; a filter that cannot be read leaves it as it is.
 pub(crate) struct FilterDialog {
     field: TextField,
-    before: (String, Option<u32>),
-    kept: Result<String, FilterError>,
+    before: ImprintList,
+    kept: Result<String, String>,
 }
 
 impl FilterDialog {
     pub(super) fn new(results: &Results) -> Self {
-        let filter = results.list.filter.clone();
-        let mut field = TextField::new(filter.as_str(), LONGEST_FILTER);
-        if !filter.is_empty() {
+        let before = results.list.clone();
+        let mut field = TextField::new(before.filter.as_str(), LONGEST_FILTER);
+        if !before.filter.is_empty() {
             field.enter();
         }
+        let kept = Ok(results.kept_of_all());
         Self {
             field,
-            before: (filter, results.selected().map(|entry| entry.id)),
-            kept: Ok(results.kept_of_all()),
+            before,
+            kept,
         }
-    }
-}
-
-impl Results {
-    fn filter(&mut self, typed: &str) -> Result<String, FilterError> {
-        let filter: AtlasFilter = typed.parse()?;
-        self.list.keep(typed, &filter, &self.findings);
-        Ok(self.kept_of_all())
     }
 }
 
@@ -61,24 +53,22 @@ impl LinePrompt for FilterDialog {
             return Flow::Close;
         };
         if matches!(message, Message::Cancel | Message::Quit) {
-            let (typed, selected) = &self.before;
-            // It could be read before.
-            let _ = results.filter(typed);
-            if let Some(id) = selected {
-                results.list.find(*id);
-            }
+            results.list.clone_from(&self.before);
             return Flow::Close;
         }
-        if *message == Message::Accept || self.field.take(message) {
-            self.kept = results.filter(self.field.text());
+        let accepts = *message == Message::Accept;
+        if accepts || self.field.take(message) {
+            let kept = results.list.keep(self.field.text(), &results.findings);
+            let kept = kept.map_err(|error| error.to_string());
+            self.kept = kept.map(|()| results.kept_of_all());
         }
         match &self.kept {
-            Ok(kept) if *message == Message::Accept => {
+            _ if !accepts => {}
+            Ok(kept) => {
                 inform(app, format!("{kept} imprints"));
                 return Flow::Close;
             }
-            Err(error) if *message == Message::Accept => refuse(app, error.to_string()),
-            _ => {}
+            Err(reason) => refuse(app, reason.clone()),
         }
         Flow::Stay
     }
@@ -102,7 +92,7 @@ impl LinePrompt for FilterDialog {
     }
 
     fn wrong(&self) -> Option<String> {
-        self.kept.as_ref().err().map(FilterError::to_string)
+        self.kept.as_ref().err().cloned()
     }
 }
 
@@ -205,25 +195,19 @@ fn write_to(app: &mut App, name: String) {
         let text = format!(".npy needs all poses: only {done} of {all} were swept");
         return refuse(app, text);
     }
-    match file_of_tab(results, &name, tab_area(app, results)) {
-        Some(file) => write_file(app, name, file, Existing::Kept),
-        None => export(app, name, Existing::Kept),
-    }
-}
-
-/// Returns the drawing or the table of the open tab; None for a file that holds the results of the whole sweep.
-fn file_of_tab(results: &Results, name: &str, area: Rect) -> Option<Result<Vec<u8>, String>> {
     let tab = results.tab();
-    if has_ending(name, "svg") {
+    let file = if has_ending(&name, "svg") {
         let Some(drawing) = tab.drawing else {
             let drawn = TABS.iter().filter(|tab| tab.drawing.is_some());
             let titles = drawn.map(|tab| tab.title).collect::<Vec<_>>().join(", ");
-            return Some(Err(format!(
-                "this page has no drawing for .svg; {titles} have one"
-            )));
+            let text = format!("this page has no drawing for .svg; {titles} have one");
+            return refuse(app, text);
         };
-        return Some(drawing(results).map(String::into_bytes));
-    }
-    let table = tab.table.filter(|_| has_ending(name, "csv"))?;
-    Some(Ok(table(results, area).into_bytes()))
+        drawing(results).map(String::into_bytes)
+    } else if let Some(table) = tab.table.filter(|_| has_ending(&name, "csv")) {
+        Ok(table(results, tab_area(app, results)).into_bytes())
+    } else {
+        return export(app, name, Existing::Kept);
+    };
+    write_file(app, name, file, Existing::Kept);
 }

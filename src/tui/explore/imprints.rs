@@ -9,16 +9,15 @@
 //! Left and right choose a heading, and `s` sorts by it; a click on a heading does both. Columns of a single value
 //! are left out: the last line has the whole pose.
 
-use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Position, Rect};
-use taxel_core::atlas::{AtlasEntry, AtlasFilter, SortDirection, SortKey, sorted};
-use taxel_core::index::wide;
+use taxel_core::atlas::{AtlasEntry, AtlasFilter, FilterError, SortDirection, SortKey, sorted};
+use taxel_core::index::{index, wide};
 use taxel_core::pose::Axis;
 use taxel_files::formats::atlas::pose_share;
 use taxel_files::formats::value::{counted, grouped, percentage};
 
 use crate::tui::app::message::Message;
-use crate::tui::app::page::Wheel;
+use crate::tui::app::page::{Canvas, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::explore::results::{Chosen, Results, Tab, row_style};
 use crate::tui::explore::{ExploreMessage, Findings};
@@ -56,47 +55,40 @@ pub(super) enum SortColumn {
 
 struct Column {
     by: SortColumn,
-    title: String,
+    title: &'static str,
     width: usize,
 }
 
 fn columns(results: &Results) -> Vec<Column> {
     let (sweep, grid) = (results.sweep(), &results.sweep().grid);
-    let column = |by, title: &str, width: usize| Column {
-        by,
-        title: title.to_owned(),
-        width,
-    };
-    let varying = grid
-        .axes()
-        .filter(|&axis| grid.ranges()[axis].count() > 1)
-        .map(|axis| {
-            let title = axis.parameter().row().short;
-            column(SortColumn::Position(axis), title, results.width_of(axis))
-        });
-    let key: String = results
-        .chosen
-        .feature()
-        .key
-        .chars()
-        .take(VALUE - 1)
-        .collect();
     let id = sweep.atlas.len().to_string().len().max(2);
     let poses = grouped(sweep.poses).len().max(6) + 1 + SHARE;
-    let first = [
-        column(SortColumn::FirstPose, "#", id),
-        column(SortColumn::Poses, "poses      %", poses),
+    let key = &results.chosen.feature().key;
+    let mut columns = vec![
+        (SortColumn::FirstPose, "#", id),
+        (SortColumn::Poses, "poses      %", poses),
     ];
-    let last = [
-        column(SortColumn::Pieces, "pieces", 6),
-        column(SortColumn::Holes, "holes", 5),
-        column(SortColumn::Value, &key, VALUE),
-    ];
-    first.into_iter().chain(varying).chain(last).collect()
+    for axis in grid.axes().filter(|&axis| grid.ranges()[axis].count() > 1) {
+        let (title, width) = (axis.parameter().row().short, results.width_of(axis));
+        columns.push((SortColumn::Position(axis), title, width));
+    }
+    columns.extend([
+        (SortColumn::Pieces, "pieces", 6),
+        (SortColumn::Holes, "holes", 5),
+        (
+            SortColumn::Value,
+            key.get(..VALUE - 1).unwrap_or(key),
+            VALUE,
+        ),
+    ]);
+    let columns = columns.into_iter();
+    columns
+        .map(|(by, title, width)| Column { by, title, width })
+        .collect()
 }
 
-fn text_of(theme: &Theme, results: &Results, entry: &AtlasEntry, column: &Column) -> String {
-    match column.by {
+fn text_of(theme: &Theme, results: &Results, entry: &AtlasEntry, by: SortColumn) -> String {
+    match by {
         SortColumn::FirstPose => entry.id.to_string(),
         SortColumn::Poses => {
             let share = percentage(pose_share(results.sweep(), entry), 2);
@@ -175,12 +167,13 @@ fn on(results: &mut Results, _app: &mut App, message: &Message, area: Rect) {
     let headings: Vec<SortColumn> = columns(results).iter().map(|column| column.by).collect();
     match *message {
         Message::Explore(ExploreMessage::Columns(by)) => {
-            let now = headings.iter().position(|&by| by == results.list.heading);
-            let next = now.unwrap_or(0).saturating_add_signed(by.into());
+            let mut now = headings.iter();
+            let now = now.position(|&by| by == results.list.heading).unwrap_or(0);
+            let next = now.saturating_add_signed(by.into());
             results.list.heading = headings[next.min(headings.len() - 1)];
         }
         Message::Explore(ExploreMessage::Point(heading, _)) => {
-            let heading = headings.get(usize::try_from(heading).unwrap_or(0));
+            let heading = headings.get(index(heading));
             results.list.heading = *heading.unwrap_or(&SortColumn::Poses);
             results.list.sort(&results.findings, &results.chosen);
         }
@@ -193,8 +186,8 @@ fn on(results: &mut Results, _app: &mut App, message: &Message, area: Rect) {
 }
 
 /// Returns the position of the selected row.
-fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
-    let (panes, list) = (Panes::of(area, results), &results.list);
+fn draw(results: &Results, mut canvas: Canvas<'_>, area: Rect) -> Option<Position> {
+    let (panes, list, theme) = (Panes::of(area, results), &results.list, canvas.theme);
     let mut headings = vec![(" ".repeat(SIGN - 1), Role::Title)];
     for column in &panes.columns {
         let arrow = (list.sort.0 == column.by).then(|| theme.sorted(list.sort.1));
@@ -205,55 +198,41 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
         headings.extend([(" ".repeat(gap), Role::Title), (title, role)]);
     }
     let headings = headings.iter().map(|(text, role)| (text.as_str(), *role));
-    write::line(buffer, panes.head, theme, headings);
+    canvas.line(panes.head, headings);
     if list.rows.is_empty() {
-        write::text(
-            buffer,
-            panes.rows.area,
-            theme,
-            &results.no_row(),
-            Role::Quiet,
-        );
+        canvas.text(panes.rows.area, &results.no_row(), Role::Quiet);
     }
     let rows = results.rows_from(panes.rows.first);
     for ((index, entry), row) in rows.zip(panes.rows.area.rows()) {
         let (sign, role) = row_style(index == list.selected);
         let cells = panes.columns.iter().map(|column| {
-            let text = text_of(theme, results, &entry, column);
+            let text = text_of(theme, results, &entry, column.by);
             format!("{text:>width$}", width = column.width)
         });
         let text = cells.collect::<Vec<_>>().join(" ");
-        let pieces = [(sign, Role::Key), (&*text, role)];
-        write::line(buffer, row, theme, pieces);
+        canvas.line(row, [(sign, Role::Key), (&*text, role)]);
     }
-    if let Some(entry) = results.selected() {
-        let text = detail(theme, results, &entry);
-        write::text(buffer, panes.detail, theme, &text, Role::Text);
-    }
+    let selected = results.selected()?;
+    let [pieces, holes] = [
+        counted(selected.summary.pieces, "piece"),
+        counted(selected.summary.holes, "hole"),
+    ];
+    let (id, pose) = (selected.id, results.pose_text(selected.first_pose));
+    let (key, value) = (
+        &results.chosen.feature().key,
+        results.chosen.text(theme, id, VALUE - 1),
+    );
+    let text = format!("imprint {id} at {pose}; {pieces}, {holes}, {key} {value}");
+    canvas.text(panes.detail, &text, Role::Text);
     if let Some(area) = panes.gallery {
-        draw_gallery(theme, results, buffer, area);
+        draw_gallery(results, &selected, &mut canvas, area);
     }
     panes.rows.position(list.selected)
 }
 
-fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
-    format!(
-        "imprint {} at {}; {}, {}, {} {}",
-        entry.id,
-        results.pose_text(entry.first_pose),
-        counted(entry.summary.pieces, "piece"),
-        counted(entry.summary.holes, "hole"),
-        results.chosen.feature().key,
-        results.chosen.text(theme, entry.id, VALUE - 1)
-    )
-}
-
 /// Each thumbnail has a caption above it.
-fn draw_gallery(theme: &Theme, results: &Results, buffer: &mut Buffer, area: Rect) {
-    let Some(first) = results.selected() else {
-        return;
-    };
-    let (width, height) = thumbnail_size(theme, &first.imprint);
+fn draw_gallery(results: &Results, first: &AtlasEntry, canvas: &mut Canvas<'_>, area: Rect) {
+    let (width, height) = thumbnail_size(canvas.theme, &first.imprint);
     let (width, height) = (
         width.min(area.width),
         1 + height.min(area.height.max(1) - 1),
@@ -268,21 +247,22 @@ fn draw_gallery(theme: &Theme, results: &Results, buffer: &mut Buffer, area: Rec
         let (x, y) = (area.x + column * (width + 2), area.y + line * height);
         let place = Rect::new(x, y, width, height).intersection(area);
         let sign = if index == selected { ">" } else { " " };
-        let caption = format!("{sign} imprint {}", entry.id);
-        write::text(buffer, place, theme, &caption, Role::Key);
-        draw_thumbnail(theme, &entry.imprint, buffer, write::below(place, 1));
+        canvas.text(place, &format!("{sign} imprint {}", entry.id), Role::Key);
+        let below = write::below(place, 1);
+        draw_thumbnail(canvas.theme, &entry.imprint, canvas.buffer, below);
     }
 }
 
 /// The rows of the list: the imprints that the filter keeps, by number. The selected imprint stays selected when they
 /// are sorted or filtered, if it is kept.
+#[derive(Clone)]
 pub(super) struct ImprintList {
-    sort: (SortColumn, SortDirection),
+    pub(super) sort: (SortColumn, SortDirection),
     heading: SortColumn,
     pub(super) filter: String,
     /// All imprints, sorted: a filter is typed letter by letter, which does not change the order.
     order: Vec<u32>,
-    /// Empty keeps all.
+    /// Empty, before there is a filter, keeps all.
     kept: Vec<bool>,
     pub(super) rows: Vec<u32>,
     pub(super) selected: usize,
@@ -305,21 +285,13 @@ impl ImprintList {
 
     /// Sorts by the chosen heading; by the same one again, reverses the order.
     fn sort(&mut self, findings: &Findings, chosen: &Chosen) {
-        let first = match self.heading {
+        let direction = match self.heading {
+            heading if heading == self.sort.0 => self.sort.1.reversed(),
             SortColumn::FirstPose | SortColumn::Position(_) => SortDirection::Ascending,
             _ => SortDirection::Descending,
         };
-        let (by, direction) = self.sort;
-        let again = by == self.heading;
-        self.sort = (
-            self.heading,
-            if again { direction.reversed() } else { first },
-        );
+        self.sort = (self.heading, direction);
         self.arrange(findings, chosen);
-    }
-
-    pub(super) fn is_by_value(&self) -> bool {
-        self.sort.0 == SortColumn::Value
     }
 
     pub(super) fn arrange(&mut self, Findings { sweep, .. }: &Findings, chosen: &Chosen) {
@@ -331,10 +303,8 @@ impl ImprintList {
             SortColumn::Holes => SortKey::Holes,
             SortColumn::Value => SortKey::Value(&chosen.values),
             SortColumn::Position(axis) => {
-                let first = sweep.atlas.first_poses();
-                positions = first
-                    .map(|pose| Some(sweep.grid.pose(pose)[axis]))
-                    .collect();
+                let at = |pose| Some(sweep.grid.pose(pose)[axis]);
+                positions = sweep.atlas.first_poses().map(at).collect();
                 SortKey::Value(&positions)
             }
         };
@@ -342,14 +312,13 @@ impl ImprintList {
         self.apply_filter();
     }
 
-    pub(super) fn keep(&mut self, typed: &str, filter: &AtlasFilter, findings: &Findings) {
+    /// A filter that cannot be read leaves the list as it is.
+    pub(super) fn keep(&mut self, typed: &str, findings: &Findings) -> Result<(), FilterError> {
+        let filter: AtlasFilter = typed.parse()?;
         typed.trim().clone_into(&mut self.filter);
-        self.kept = if filter.is_empty() {
-            Vec::new()
-        } else {
-            filter.keeps(&findings.sweep.atlas)
-        };
+        self.kept = filter.keeps(&findings.sweep.atlas);
         self.apply_filter();
+        Ok(())
     }
 
     fn apply_filter(&mut self) {
@@ -396,13 +365,13 @@ mod tests {
         let before = list.rows.clone();
         list.select(7);
         let typed = format!("id<={}", before[7]);
-        list.keep(&typed, &typed.parse().expect("a filter"), &findings);
+        list.keep(&typed, &findings).expect("a filter");
         assert!(list.rows.len() < before.len());
         assert!(list.rows.iter().all(|&id| id <= before[7]));
         assert_eq!(list.rows[list.selected], before[7]);
-        list.keep("id<0", &"id<0".parse().expect("a filter"), &findings);
+        list.keep("id<0", &findings).expect("a filter");
         assert_eq!((list.rows.len(), list.selected), (0, 0));
-        list.keep("", &AtlasFilter::default(), &findings);
+        list.keep("", &findings).expect("no filter");
         assert_eq!(list.rows, before);
     }
 
@@ -421,7 +390,7 @@ mod tests {
         assert_eq!([first(usize::MAX), first(last)], [last, last]);
         assert_eq!(first(last - 1), (last - 1) / visible * visible);
         first(usize::MAX);
-        list.keep("id<15", &"id<15".parse().expect("a filter"), &findings);
+        list.keep("id<15", &findings).expect("a filter");
         assert_eq!(list.first_row(visible), 5, "no line stays empty");
         assert_eq!(list.first_row(20), 0);
     }

@@ -8,9 +8,7 @@
 use std::cell::RefCell;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 
-use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use taxel_core::index::index;
@@ -21,7 +19,7 @@ use taxel_files::formats::value::{counted, grouped};
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::Wheel;
+use crate::tui::app::page::{Canvas, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::explore::ExploreMessage;
 use crate::tui::explore::results::{NOTHING_TO_DRAW, Results, Tab, foot};
@@ -56,13 +54,11 @@ const SHADES: [f64; SHADE_COUNT as usize] = [0.0, 0.1, 0.3, 0.7, 1.0];
 /// The most cells along a side of a drawing: more could not be told apart.
 const DRAWN: u64 = 400;
 
-type Imprints = Arc<[Option<u32>]>;
-
-#[derive(Clone, Debug, Default)]
+#[derive(Default)]
 pub(super) struct MapState {
     zoom: usize,
     /// The imprints that were drawn last, and the poses that leave them: finding them takes a sweep.
-    drawn: RefCell<Option<(Visible, Imprints)>>,
+    drawn: RefCell<Option<(Visible, Vec<Option<u32>>)>>,
 }
 
 /// Poses of a map: every `stride`-th one of both axes from the first on.
@@ -252,26 +248,23 @@ fn next_zoom(results: &mut Results, app: &mut App) {
 
 fn only_one(results: &Results, app: &mut App, what: &str) {
     let ranges = app.keymap.label(results.tab().context, &action::RANGES);
-    refuse(
-        app,
-        format!("only one {what} was swept; {ranges} explores other ranges"),
-    );
+    let text = format!("only one {what} was swept; {ranges} explores other ranges");
+    refuse(app, text);
 }
 
 pub(super) fn closest(results: &Results, area: Rect) -> usize {
     Pane::of(area, results).closest
 }
 
-fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
+fn draw(results: &Results, mut canvas: Canvas<'_>, area: Rect) -> Option<Position> {
     let pane = Pane::of(area, results);
-    let left = match pane.side {
-        Some(side) => write::left_of(area, side.x - 2),
-        None => area,
-    };
-    let sign = match (pane.is_picture(), has_colours(theme)) {
-        (false, _) => "letter",
-        (true, true) => "colour",
-        (true, false) => "shade",
+    let left = pane
+        .side
+        .map_or(area, |side| write::left_of(area, side.x - 2));
+    let (sign, count) = match (pane.is_picture(), has_colours(canvas.theme)) {
+        (false, _) => ("letter", LETTERS),
+        (true, true) => ("colour", TINTS),
+        (true, false) => ("shade", SHADE_COUNT),
     };
     let mut meaning = format!("  each {sign} an imprint");
     if pane.shown.stride > 1 {
@@ -281,15 +274,14 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Op
     if write::width(&heading) + write::width(&meaning) > left.width.into() {
         meaning.clear();
     }
-    let pieces = [(&*heading, Role::Title), (&*meaning, Role::Quiet)];
-    write::line(buffer, left, theme, pieces);
-    draw_pose(theme, results, &pane, buffer, area);
+    canvas.line(left, [(&*heading, Role::Title), (&*meaning, Role::Quiet)]);
+    draw_pose(&mut canvas, results, &pane, area);
     if pane.cells.is_empty() {
-        draw_no_room(theme, buffer, area);
+        draw_no_room(canvas.theme, canvas.buffer, area);
         return None;
     }
-    draw_rulers(theme, results, &pane, buffer, left);
-    Some(draw_cells(theme, results, &pane, buffer))
+    draw_rulers(&mut canvas, results, &pane, left);
+    Some(draw_cells(&mut canvas, results, &pane, count))
 }
 
 fn drawing(results: &Results) -> Result<String, String> {
@@ -315,10 +307,11 @@ fn drawing(results: &Results) -> Result<String, String> {
 /// Says the angle and the zoom: `angle 30° 4/36  zoom x 1.00`.
 fn heading(results: &Results) -> String {
     let grid = &results.sweep().grid;
-    let others = grid
+    let mut parts = Vec::new();
+    for axis in grid
         .axes()
-        .filter(|axis| !matches!(axis, Axis::X0 | Axis::Y0));
-    let parts = others.map(|axis| {
+        .filter(|axis| !matches!(axis, Axis::X0 | Axis::Y0))
+    {
         let (at, count) = (results.place[axis], grid.counts()[axis]);
         let value = axis.parameter().format(grid.ranges()[axis].value(at));
         let unit = if axis == Axis::Angle { "°" } else { "" };
@@ -326,44 +319,41 @@ fn heading(results: &Results) -> String {
         if count > 1 {
             text += &format!(" {}/{}", grouped(at + 1), grouped(count));
         }
-        text
-    });
-    parts.collect::<Vec<_>>().join("  ")
+        parts.push(text);
+    }
+    parts.join("  ")
 }
 
 /// Returns the position of the cursor.
-fn draw_cells(theme: &Theme, results: &Results, pane: &Pane, buffer: &mut Buffer) -> Position {
+fn draw_cells(canvas: &mut Canvas<'_>, results: &Results, pane: &Pane, count: u8) -> Position {
+    let theme = canvas.theme;
     let mut drawn = results.map.drawn.borrow_mut();
     let (_, ids) = match drawn.take() {
         Some(last) if last.0 == pane.shown => drawn.insert(last),
-        _ => drawn.insert((pane.shown, pane.shown.find(results).into())),
+        _ => drawn.insert((pane.shown, pane.shown.find(results))),
     };
     let columns = index(pane.shown.count.0).max(1);
-    let signs = match (pane.is_picture(), has_colours(theme)) {
-        (false, _) => signs(ids, columns, LETTERS),
-        (true, true) => signs(ids, columns, TINTS),
-        (true, false) => signs(ids, columns, SHADE_COUNT),
-    };
-    for (line, row) in signs
-        .chunks(columns * usize::from(pane.lines))
-        .zip(pane.cells.rows())
-    {
+    let signs = signs(ids, columns, count);
+    let lines = signs.chunks(columns * usize::from(pane.lines));
+    for (line, row) in lines.zip(pane.cells.rows()) {
         for (column, place) in row.columns().enumerate() {
             let column = column / usize::from(pane.cell);
-            let [upper, lower] =
-                [column, columns + column].map(|at| line.get(at).copied().flatten());
+            let sign = |at: usize| line.get(at).copied().flatten();
+            let (upper, lower) = (sign(column), sign(columns + column));
             let (sign, style) = if pane.is_picture() {
                 halves(theme, upper, lower)
             } else {
                 let style = upper.map_or(Style::new(), |sign| theme.tint(sign.into()));
                 (upper.map_or(' ', letter), style)
             };
-            buffer[place.as_position()].set_char(sign).set_style(style);
+            canvas.buffer[place.as_position()]
+                .set_char(sign)
+                .set_style(style);
         }
     }
     let cursor = pane.cursor(results.place);
     for column in 0..pane.cell {
-        let cell = &mut buffer[(cursor.x + column, cursor.y)];
+        let cell = &mut canvas.buffer[(cursor.x + column, cursor.y)];
         // A reversed block would look like its neighbours.
         if pane.is_picture() {
             cell.reset();
@@ -397,7 +387,7 @@ fn halves(theme: &Theme, upper: Option<u8>, lower: Option<u8>) -> (char, Style) 
     }
 }
 
-fn draw_rulers(theme: &Theme, results: &Results, pane: &Pane, buffer: &mut Buffer, area: Rect) {
+fn draw_rulers(canvas: &mut Canvas<'_>, results: &Results, pane: &Pane, area: Rect) {
     let value = |axis: Axis, index: u64| {
         let range = results.sweep().grid.ranges()[axis];
         axis.parameter().format(range.value(index))
@@ -407,50 +397,37 @@ fn draw_rulers(theme: &Theme, results: &Results, pane: &Pane, buffer: &mut Buffe
     let step = pane.shown.stride * u64::from(pane.lines);
     for (row, index) in pane.cells.rows().zip(0..) {
         let text = format!("{:>label$}", value(Axis::Y0, y + index * step));
-        let row = Rect {
-            x: area.x,
-            width: pane.cells.x - area.x,
-            ..row
-        };
-        write::text(buffer, row, theme, &text, Role::Quiet);
+        let (x, width) = (area.x, pane.cells.x - area.x);
+        canvas.text(Rect { x, width, ..row }, &text, Role::Quiet);
     }
     let last = x + (pane.shown.count.0 - 1) * pane.shown.stride;
-    let (first, last) = (format!("x0 {}", value(Axis::X0, x)), value(Axis::X0, last));
-    let rest = usize::from(pane.cells.width).saturating_sub(first.len());
-    let last = if last.len() < rest {
-        last
-    } else {
-        String::new()
-    };
+    let (mut text, last) = (format!("x0 {}", value(Axis::X0, x)), value(Axis::X0, last));
+    let rest = usize::from(pane.cells.width).saturating_sub(text.len());
+    if last.len() < rest {
+        text += &format!("{last:>rest$}");
+    }
     let row = write::row(area, 1);
-    write::text(buffer, row, theme, "y0", Role::Quiet);
-    let text = format!("{first}{last:>rest$}");
-    let row = write::right_of(row, pane.cells.x);
-    write::text(buffer, row, theme, text.trim_end(), Role::Quiet);
+    canvas.text(row, "y0", Role::Quiet);
+    canvas.text(write::right_of(row, pane.cells.x), &text, Role::Quiet);
 }
 
-fn draw_pose(theme: &Theme, results: &Results, pane: &Pane, buffer: &mut Buffer, area: Rect) {
-    let grid = &results.sweep().grid;
+fn draw_pose(canvas: &mut Canvas<'_>, results: &Results, pane: &Pane, area: Rect) {
+    let (grid, atlas) = (&results.sweep().grid, &results.sweep().atlas);
     let number = grid.number(results.place);
     let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(number));
-    let entry = results.sweep().atlas.find(&imprint);
-    let entry = entry.and_then(|id| results.sweep().atlas.entry(id));
-    let (which, poses) = match entry {
-        Some(entry) => (
-            format!("imprint {}", entry.id),
-            counted(entry.count, "pose"),
-        ),
-        None => ("not swept".to_owned(), String::new()),
-    };
+    let entry = atlas.find(&imprint).and_then(|id| atlas.entry(id));
+    let (which, poses) = entry.map_or(("not swept".to_owned(), String::new()), |entry| {
+        let poses = counted(entry.count, "pose");
+        (format!("imprint {}", entry.id), poses)
+    });
     let text = format!("{which} at {}; {poses}", results.pose_text(number));
-    let text = text.trim_end_matches("; ");
-    write::text(buffer, foot(area), theme, text, Role::Text);
+    canvas.text(foot(area), text.trim_end_matches("; "), Role::Text);
     if let Some(side) = pane.side {
-        write::text(buffer, side, theme, &which, Role::Title);
-        write::text(buffer, write::row(side, 1), theme, &poses, Role::Text);
+        canvas.text(side, &which, Role::Title);
+        canvas.text(write::row(side, 1), &poses, Role::Text);
         let mut picture = below(side, 3);
         picture.height = picture.height.saturating_sub(1);
-        draw_thumbnail(theme, &imprint, buffer, picture);
+        draw_thumbnail(canvas.theme, &imprint, canvas.buffer, picture);
     }
 }
 

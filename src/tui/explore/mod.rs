@@ -3,17 +3,15 @@
 //! ```text
 //! ranges    the form: what to sweep                       work      the sweep or the export in progress
 //! results   a page of six tabs over what was found        export    the prompts: filter of the list, name of a file
-//! imprints  statistics  histogram  map  scatter  angles   the tabs: each draws, exports and handles what is its own
+//! imprints  statistics  map  plots                        the tabs: each draws, exports and handles what is its own
 //! ```
 
-pub(crate) mod angles;
-pub(crate) mod export;
-mod histogram;
+mod export;
 mod imprints;
 mod map;
+mod plots;
 pub(crate) mod ranges;
 pub(crate) mod results;
-mod scatter;
 mod statistics;
 pub(crate) mod work;
 

@@ -11,7 +11,6 @@
 
 use std::sync::Arc;
 
-use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use taxel_core::atlas::{AtlasEntry, Feature, features};
 use taxel_core::index::wide;
@@ -25,22 +24,18 @@ use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Canvas, Flow, Page, Place, Wheel};
 use crate::tui::app::state::App;
-use crate::tui::explore::angles::AngleCurve;
 use crate::tui::explore::export::{ExportDialog, FilterDialog};
-use crate::tui::explore::imprints::ImprintList;
-use crate::tui::explore::map::MapState;
+use crate::tui::explore::imprints::{self, ImprintList, SortColumn};
+use crate::tui::explore::map::{self, MapState};
+use crate::tui::explore::plots::{self, AngleCurve, find_angles};
+use crate::tui::explore::statistics::{HISTOGRAM, STATISTICS};
 use crate::tui::explore::work::open_ranges;
-use crate::tui::explore::{
-    ExploreMessage, ExploreTab, Findings, angles, histogram, imprints, map, name_of, scatter,
-    statistics,
-};
+use crate::tui::explore::{ExploreMessage, ExploreTab, Findings, name_of};
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::Context;
 use crate::tui::widget::rows::moved;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, around, narrow};
-
-type Drawing = fn(&Results) -> Result<String, String>;
 
 /// A tab. Its functions get the area below the summary.
 pub(super) struct Tab {
@@ -49,10 +44,10 @@ pub(super) struct Tab {
     /// Whether it shows only what the filter keeps.
     pub(super) filtered: bool,
     pub(super) wheel: Wheel,
-    pub(super) drawing: Option<Drawing>,
+    pub(super) drawing: Option<fn(&Results) -> Result<String, String>>,
     /// None for the list of imprints, whose file has all imprints, and for tabs with a drawing.
     pub(super) table: Option<fn(&Results, Rect) -> String>,
-    pub(super) draw: fn(&Results, &Theme, &mut Buffer, Rect) -> Option<Position>,
+    pub(super) draw: fn(&Results, Canvas<'_>, Rect) -> Option<Position>,
     pub(super) click: fn(&Results, Rect, Position) -> Option<Message>,
     pub(super) on: fn(&mut Results, &mut App, &Message, Rect),
 }
@@ -60,11 +55,11 @@ pub(super) struct Tab {
 /// In the order of [`ExploreTab`].
 pub(super) static TABS: [&Tab; 6] = [
     &imprints::TAB,
-    &statistics::TAB,
-    &histogram::TAB,
+    &STATISTICS,
+    &HISTOGRAM,
     &map::TAB,
-    &scatter::TAB,
-    &angles::TAB,
+    &plots::SCATTER,
+    &plots::ANGLES,
 ];
 
 pub(super) const NOTHING_TO_DRAW: &str = "there is nothing to draw";
@@ -76,7 +71,7 @@ pub(crate) struct Results {
     pub(super) findings: Arc<Findings>,
     tab: usize,
     /// The descriptor of all tabs but the map.
-    pub(super) chosen: Chosen,
+    pub(crate) chosen: Chosen,
     /// The horizontal one of the scatter plot.
     pub(super) across: Chosen,
     pub(super) list: ImprintList,
@@ -88,7 +83,7 @@ pub(crate) struct Results {
 }
 
 /// A descriptor, and its value for each imprint.
-pub(super) struct Chosen {
+pub(crate) struct Chosen {
     pub(super) number: usize,
     pub(super) values: Vec<Option<f64>>,
 }
@@ -102,7 +97,7 @@ impl Chosen {
         }
     }
 
-    pub(super) fn feature(&self) -> &'static Feature {
+    pub(crate) fn feature(&self) -> &'static Feature {
         &features()[self.number]
     }
 
@@ -125,12 +120,7 @@ pub(super) fn described(feature: &Feature) -> String {
     format!("{}: {}", named(feature), feature.descriptor.name)
 }
 
-pub(super) fn choose_descriptor(
-    results: &mut Results,
-    _app: &mut App,
-    message: &Message,
-    _area: Rect,
-) {
+pub(super) fn choose_descriptor(results: &mut Results, _: &mut App, message: &Message, _: Rect) {
     if let Some(row) = moved(results.chosen.number, message) {
         results.choose(row);
     }
@@ -148,14 +138,6 @@ pub(super) fn row_style(is_selected: bool) -> (&'static str, Role) {
 /// Returns the last line of a tab.
 pub(super) fn foot(area: Rect) -> Rect {
     write::row(area, usize::from(area.height.saturating_sub(1)))
-}
-
-/// Returns what is between the first and the last line of a tab.
-pub(super) fn middle(area: Rect) -> Rect {
-    Rect {
-        height: area.height.saturating_sub(2),
-        ..write::below(area, 1)
-    }
 }
 
 impl Results {
@@ -180,10 +162,6 @@ impl Results {
         TABS[self.tab]
     }
 
-    pub(crate) fn feature(&self) -> &'static Feature {
-        self.chosen.feature()
-    }
-
     fn is_open(&self, tab: ExploreTab) -> bool {
         self.tab == tab as usize
     }
@@ -195,13 +173,9 @@ impl Results {
 
     fn choose(&mut self, number: usize) {
         self.chosen = Chosen::new(&self.findings, number);
-        if self.list.is_by_value() {
+        if self.list.sort.0 == SortColumn::Value {
             self.list.arrange(&self.findings, &self.chosen);
         }
-    }
-
-    pub(super) fn angles(&self) -> Option<&AngleCurve> {
-        self.curve.as_ref()?.1.as_ref()
     }
 
     pub(super) fn kept_of_all(&self) -> String {
@@ -262,10 +236,8 @@ impl Results {
     pub(super) fn width_of(&self, axis: Axis) -> usize {
         let (range, parameter) = (self.sweep().grid.ranges()[axis], axis.parameter());
         let ends = [range.value(0), range.value(1), range.last()];
-        let widths = ends.map(|value| parameter.format(value).len());
-        widths
-            .into_iter()
-            .fold(parameter.row().short.len(), usize::max)
+        let widths = ends.map(|value| parameter.format(value).len()).into_iter();
+        widths.fold(parameter.row().short.len(), usize::max)
     }
 
     fn select(&mut self, id: u32) -> Result<(), String> {
@@ -289,11 +261,11 @@ impl Results {
     }
 
     /// Selects the imprint on the matrix, or the same imprint at another place: a shape moved by whole cells leaves an
-    /// imprint moved by as many taxels. Returns where it lies on the matrix, relative to the one in the list.
-    fn find(&mut self, app: &App) -> Result<Option<String>, String> {
+    /// imprint moved by as many taxels.
+    fn find(&mut self, app: &mut App) -> Result<(), String> {
         let imprint = app.reading().imprint;
         if let Some(id) = self.sweep().atlas.find(&imprint) {
-            return self.select(id).map(|()| None);
+            return self.select(id);
         }
         let found = self.sweep().atlas.find_shifted(&imprint);
         let found = found.ok_or("the imprint on the matrix is not among these")?;
@@ -308,9 +280,11 @@ impl Results {
             format!("{count} {}", towards[usize::from(by > 0)])
         });
         let ways = ways.collect::<Vec<_>>().join(" and ");
-        Ok(Some(format!(
-            "the same imprint; on the matrix it lies {ways}"
-        )))
+        inform(
+            app,
+            format!("the same imprint; on the matrix it lies {ways}"),
+        );
+        Ok(())
     }
 
     /// Puts the shape onto the matrix in the present pose, with just the imprint that the sweep found. The user may
@@ -327,39 +301,46 @@ impl Results {
         change(app, document);
         app.history.choose(None);
         let id = self.sweep().atlas.find(&imprint);
-        let number = id.map_or(String::new(), |id| format!("imprint {id} "));
+        let mut text = id.map_or(String::new(), |id| format!("imprint {id} "));
         let [undo, explore] = [&action::UNDO, &action::EXPLORE].map(|action| app.key_of(action));
-        inform(
-            app,
-            format!("{number}on the matrix; {undo} takes it back, {explore} returns to Explore"),
-        );
+        text += &format!("on the matrix; {undo} takes it back, {explore} returns to Explore");
+        inform(app, text);
         Ok(())
     }
 
-    /// Handles what only changes what is shown.
-    fn show(&mut self, app: &mut App, message: &Message) -> Result<(), String> {
-        let Message::Explore(asked) = message else {
-            (self.tab().on)(self, app, message, tab_area(app, self));
-            return Ok(());
-        };
-        match *asked {
-            ExploreMessage::Tab(tab) => self.tab = tab as usize,
-            ExploreMessage::NextTab(by) => self.tab = around(self.tab, by, TABS.len()),
-            ExploreMessage::Feature(_) if self.is_open(ExploreTab::Map) => {
+    fn handle(&mut self, app: &mut App, message: &Message) -> Result<Flow, String> {
+        match *message {
+            Message::Cancel | Message::Quit => return Ok(Flow::Close),
+            Message::Accept => {
+                self.put_onto_matrix(app)?;
+                return Ok(Flow::Close);
+            }
+            Message::Compare => {
+                let entry = self.selected().ok_or(NOTHING_SELECTED)?;
+                compare_with(app, &format!("imprint {}", entry.id), &entry.imprint);
+            }
+            Message::Explore(ExploreMessage::Export) => {
+                return Ok(Flow::push(ExportDialog::new(self)));
+            }
+            Message::Explore(ExploreMessage::Filter) => {
+                return Ok(Flow::push(FilterDialog::new(self)));
+            }
+            Message::Explore(ExploreMessage::Ranges) => open_ranges(app, Some(&self.sweep().grid)),
+            Message::Explore(ExploreMessage::Tab(tab)) => self.tab = tab as usize,
+            Message::Explore(ExploreMessage::NextTab(by)) => {
+                self.tab = around(self.tab, by, TABS.len());
+            }
+            Message::Explore(ExploreMessage::Feature(_)) if self.is_open(ExploreTab::Map) => {
                 return Err("the map shows no descriptor".to_owned());
             }
-            ExploreMessage::Feature(by) => {
+            Message::Explore(ExploreMessage::Feature(by)) => {
                 self.choose(around(self.chosen.number, by, features().len()));
             }
-            ExploreMessage::Follow => return self.follow(),
-            ExploreMessage::Find => {
-                if let Some(text) = self.find(app)? {
-                    inform(app, text);
-                }
-            }
+            Message::Explore(ExploreMessage::Follow) => self.follow()?,
+            Message::Explore(ExploreMessage::Find) => self.find(app)?,
             _ => (self.tab().on)(self, app, message, tab_area(app, self)),
         }
-        Ok(())
+        Ok(Flow::Stay)
     }
 }
 
@@ -372,38 +353,14 @@ pub(super) fn tab_area(app: &App, results: &Results) -> Rect {
 
 impl Page for Results {
     fn on(&mut self, app: &mut App, message: &Message) -> Flow {
-        let done = match message {
-            Message::Cancel | Message::Quit => return Flow::Close,
-            Message::Accept => match self.put_onto_matrix(app) {
-                Ok(()) => return Flow::Close,
-                refused => refused,
-            },
-            Message::Compare => match self.selected() {
-                Some(entry) => {
-                    compare_with(app, &format!("imprint {}", entry.id), &entry.imprint);
-                    Ok(())
-                }
-                None => Err(NOTHING_SELECTED.to_owned()),
-            },
-            Message::Explore(ExploreMessage::Export) => {
-                return Flow::push(ExportDialog::new(self));
-            }
-            Message::Explore(ExploreMessage::Filter) => {
-                return Flow::push(FilterDialog::new(self));
-            }
-            Message::Explore(ExploreMessage::Ranges) => {
-                open_ranges(app, Some(&self.sweep().grid));
-                Ok(())
-            }
-            message => self.show(app, message),
-        };
-        if let Err(reason) = done {
+        let flow = self.handle(app, message).unwrap_or_else(|reason| {
             refuse(app, reason);
-        }
+            Flow::Stay
+        });
         if self.is_open(ExploreTab::Angles) {
-            angles::find(app, self);
+            find_angles(app, self);
         }
-        Flow::Stay
+        flow
     }
 
     /// Explore opens them again for the same shape.
@@ -419,18 +376,14 @@ impl Page for Results {
         Place::Screen
     }
 
-    fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
+    fn draw(&self, mut canvas: Canvas<'_>, area: Rect) -> Option<Position> {
         for (tab, title, place) in titles(area) {
-            let role = if tab == self.tab {
-                Role::Focus
-            } else {
-                Role::Key
-            };
-            write::text(buffer, place, theme, &title, role);
+            let is_open = tab == self.tab;
+            canvas.text(place, &title, if is_open { Role::Focus } else { Role::Key });
         }
         let summary = self.summary(self.tab().filtered);
-        write::text(buffer, write::row(area, 1), theme, &summary, Role::Text);
-        (self.tab().draw)(self, theme, buffer, write::below(area, 2))
+        canvas.text(write::row(area, 1), &summary, Role::Text);
+        (self.tab().draw)(self, canvas, write::below(area, 2))
     }
 
     fn click(&self, area: Rect, at: Position) -> Option<Message> {

@@ -9,16 +9,14 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use taxel_core::picture::Picture;
 use taxel_core::pose::PoseGrid;
-use taxel_core::progress::Progress;
 use taxel_core::source::Source;
 use taxel_core::sweep::{Sweep, SweepResult, TimingSample};
 use taxel_files::formats::value::{counted, grouped};
 use taxel_files::memory::MemoryGuard;
-use taxel_files::storage::{Existing, FileError, PoseFile, atlas_path, is_poses, write_atlas};
+use taxel_files::storage::{Existing, PoseFile, atlas_path, is_poses, write_atlas};
 
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::message::Message;
@@ -31,7 +29,7 @@ use crate::tui::explore::{ExploreMessage, Findings, name_of};
 use crate::tui::files::absolute;
 use crate::tui::jobs::{self, JobProgress, answer};
 use crate::tui::keys::keymap::Context;
-use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::theme::Role;
 use crate::tui::widget::write;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,11 +56,11 @@ pub(crate) fn act(app: &mut App, asked: ExploreMessage) {
 /// another shape are kept: the form opens, and they are there again with their shape.
 fn open(app: &mut App) {
     let (explored, sensor) = (explored(app), app.history.present().sensor);
-    let is_own = |results: &mut Box<Results>| {
+    let own = app.results.take_if(|results| {
         let grid = &results.sweep().grid;
         explored.is_some_and(|source| grid.is_of(&source, &sensor))
-    };
-    match app.results.take_if(is_own) {
+    });
+    match own {
         Some(results) => app.pages.push(results),
         None => open_ranges(app, None),
     }
@@ -238,41 +236,26 @@ fn write_file(
     let written = if is_poses(path) {
         let memory = MemoryGuard::new(None, COARSER);
         memory.limit(progress, |progress| {
-            write_poses(result, path, existing, progress)
+            let mut file = PoseFile::new(path, &result.grid, existing)?;
+            // The imprints of its poses are not kept, so the grid is swept again.
+            let sweep = Sweep::new(&result.grid).with_progress(progress);
+            sweep.run_with_rows(&mut |row, ids| file.take(row, ids));
+            file.finish()?.map(|whole| whole.persist()).transpose()
         })?
     } else {
-        let path = atlas_path(path)?;
-        let file = write_atlas(&path, result, existing);
+        let file = write_atlas(&atlas_path(path)?, result, existing);
         file.and_then(|file| {
             // Dropped if it comes too late.
             let file = (!progress.is_stopped()).then(|| file.persist());
-            file.transpose().map(|named| named.is_some())
+            file.transpose()
         })
     };
     match written {
-        Ok(true) => Ok(true),
+        Ok(Some(_)) => Ok(true),
         Err(error) if error.exists() && existing == Existing::Kept => Ok(false),
         Err(error) if !progress.is_stopped() => Err(error.to_string()),
         _ => Err("stopped; nothing was written".to_owned()),
     }
-}
-
-/// Writes the poses of a sweep. Sweeps the grid again, because the imprints of its poses are not kept. Returns true if
-/// the sweep was completed.
-fn write_poses(
-    result: &SweepResult,
-    path: &Path,
-    existing: Existing,
-    progress: &dyn Progress,
-) -> Result<bool, FileError> {
-    let mut file = PoseFile::new(path, &result.grid, existing)?;
-    let sweep = Sweep::new(&result.grid).with_progress(progress);
-    sweep.run_with_rows(&mut |row, ids| file.take(row, ids));
-    let Some(whole) = file.finish()? else {
-        return Ok(false);
-    };
-    whole.persist()?;
-    Ok(true)
 }
 
 /// Work in progress.
@@ -342,25 +325,21 @@ impl Page for Running {
         Place::Body
     }
 
-    fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
+    fn draw(&self, mut canvas: Canvas<'_>, area: Rect) -> Option<Position> {
         let inner = write::right_of(area, area.x.saturating_add(2));
         let row = |index: usize| write::row(inner, 2 * index);
-        write::text(buffer, row(0), theme, &self.title, Role::Title);
+        canvas.text(row(0), &self.title, Role::Title);
         if let Some(all) = self.poses {
             let done = self.progress.map_or(0, |progress| progress.poses);
             let percent = u128::from(done) * 100 / u128::from(all.max(1));
             let text = format!("{} of {}, {percent} %", grouped(done), counted(all, "pose"));
-            write::text(buffer, row(1), theme, &text, Role::Text);
-            gauge(theme, done, all, buffer, row(2));
+            canvas.text(row(1), &text, Role::Text);
+            gauge(&mut canvas, done, all, row(2));
         }
-        let speed = self.speed().unwrap_or_default();
-        write::text(buffer, row(3), theme, &speed, Role::Text);
-        let end = if self.stopping {
-            "stopping; Ctrl-C quits at once"
-        } else {
-            self.end
-        };
-        write::text(buffer, row(4), theme, end, Role::Quiet);
+        canvas.text(row(3), &self.speed().unwrap_or_default(), Role::Text);
+        let stopping = "stopping; Ctrl-C quits at once";
+        let end = if self.stopping { stopping } else { self.end };
+        canvas.text(row(4), end, Role::Quiet);
         None
     }
 
@@ -369,17 +348,12 @@ impl Page for Running {
     }
 }
 
-pub(crate) fn gauge(theme: &Theme, done: u64, all: u64, buffer: &mut Buffer, row: Rect) {
-    let [full, _, empty] = theme.bar();
+pub(crate) fn gauge(canvas: &mut Canvas<'_>, done: u64, all: u64, row: Rect) {
+    let [full, _, empty] = canvas.theme.bar();
     let width = row.width.min(60);
     let filled = u128::from(done.min(all)) * u128::from(width) / u128::from(all.max(1));
     let filled = u16::try_from(filled).unwrap_or(width);
     let text = |character: char, count: u16| character.to_string().repeat(count.into());
     let (done, rest) = (text(full, filled), text(empty, width - filled));
-    write::line(
-        buffer,
-        row,
-        theme,
-        [(&*done, Role::Chosen), (&*rest, Role::Quiet)],
-    );
+    canvas.line(row, [(&*done, Role::Chosen), (&*rest, Role::Quiet)]);
 }

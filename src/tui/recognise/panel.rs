@@ -16,7 +16,6 @@
 //!                             +--------------------------------------------+
 //! ```
 
-use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::number::{share, short};
@@ -28,12 +27,12 @@ use crate::tui::app::page::{Canvas, Flow, Page, Place, PoseLayer};
 use crate::tui::app::state::App;
 use crate::tui::explore::work::gauge;
 use crate::tui::keys::action;
-use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::keys::keymap::Context;
 use crate::tui::recognise::RecogniseMessage;
 use crate::tui::recognise::answer::{details, verdict};
 use crate::tui::recognise::page::{Preparation, Recognition};
 use crate::tui::recognise::trained::TrainedModel;
-use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::theme::Role;
 use crate::tui::widget::write::{self, narrow};
 
 const PERCENT: usize = 9;
@@ -57,16 +56,9 @@ impl Page for Recognition {
     }
 
     fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
-        let (theme, keymap, buffer) = (canvas.theme, canvas.keymap, canvas.buffer);
-        let mut panel = Panel {
-            theme,
-            keymap,
-            buffer,
-            area,
-            line: 0,
-        };
-        let title = format!("Recognise: {}", self.choice());
-        panel.text(&title, Role::Title);
+        let line = 0;
+        let mut panel = Panel { canvas, area, line };
+        panel.text(&format!("Recognise: {}", self.choice()), Role::Title);
         match (&self.preparing, self.model()) {
             (Some(preparing), _) => panel.preparation(preparing),
             (None, None) => {
@@ -126,9 +118,7 @@ impl Page for Recognition {
 
 /// The panel while it is drawn: its area, and the next line.
 struct Panel<'a> {
-    theme: &'a Theme,
-    keymap: &'a Keymap,
-    buffer: &'a mut Buffer,
+    canvas: Canvas<'a>,
     area: Rect,
     line: usize,
 }
@@ -137,12 +127,13 @@ impl Panel<'_> {
     fn text(&mut self, text: &str, role: Role) {
         let rest = write::below(self.area, narrow(self.line));
         if rest.height > 0 {
-            self.line += write::wrapped(self.buffer, rest, self.theme, text, role);
+            let (buffer, theme) = (&mut *self.canvas.buffer, self.canvas.theme);
+            self.line += write::wrapped(buffer, rest, theme, text, role);
         }
     }
 
     fn lines_of(&self, text: &str) -> usize {
-        write::broken(&self.theme.text(text), usize::from(self.area.width)).len()
+        write::broken(&self.canvas.theme.text(text), self.area.width.into()).len()
     }
 
     fn gap(&mut self) {
@@ -155,7 +146,7 @@ impl Panel<'_> {
     }
 
     fn key(&self, action: &'static action::Action) -> String {
-        self.keymap.label(Context::Recognise, action)
+        self.canvas.keymap.label(Context::Recognise, action)
     }
 
     fn preparation(&mut self, preparing: &Preparation) {
@@ -169,7 +160,7 @@ impl Panel<'_> {
         let text = format!("training: {}, {percent} %", counted(poses, "pose"));
         self.text(&text, Role::Text);
         let row = write::row(self.area, self.line);
-        gauge(self.theme, preparing.done, poses, self.buffer, row);
+        gauge(&mut self.canvas, preparing.done, poses, row);
         self.line += 1;
         let text = if preparing.stopping {
             "stopping".to_owned()
@@ -266,11 +257,11 @@ impl Panel<'_> {
     fn shape(&mut self, name: &str, width: usize, probability: f64) {
         let row = write::row(self.area, self.line);
         self.line += 1;
-        let name = write::fitted(name, width, self.theme);
+        let name = write::fitted(name, width, self.canvas.theme);
         let gap = " ".repeat(width.saturating_sub(write::width(&name)) + 1);
         let room = usize::from(row.width).saturating_sub(width + 1 + PERCENT);
         let full = full_columns(probability, room);
-        let [filled, _, _] = self.theme.bar();
+        let [filled, _, _] = self.canvas.theme.bar();
         let bar = filled.to_string().repeat(full) + &" ".repeat(room - full);
         let percent = format!("{:>PERCENT$}", percent(probability));
         let pieces = [
@@ -279,7 +270,7 @@ impl Panel<'_> {
             (&*bar, Role::Chosen),
             (&*percent, Role::Text),
         ];
-        write::line(self.buffer, row, self.theme, pieces);
+        self.canvas.line(row, pieces);
     }
 }
 
