@@ -356,7 +356,6 @@ impl ImprintList {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::tui::explore::results::tests::results;
 
     #[test]

@@ -488,7 +488,7 @@ impl Jobs {
         app.commands = RememberedFile::commands(&app.jobs.library).read();
         let mut set = RememberedFile::recognised_set(&app.jobs.library).read();
         if let Some(Ok(name)) = set.pop().map(|name| Name::new(&name)) {
-            app.recognition.begin_with(ModelChoice::from_name(name));
+            app.recognition.choice = ModelChoice::from_name(name);
         }
     }
 

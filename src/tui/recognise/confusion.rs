@@ -13,7 +13,6 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::number::share;
@@ -54,8 +53,11 @@ impl Confusion {
         self.trained.model.shapes().len()
     }
 
-    fn example(&self) -> Option<Example<'_>> {
-        self.trained.examples.get(&self.trained.model, self.cell)
+    /// Returns the imprint, cut to its box unless nothing is active, and the shapes that leave it.
+    fn example(&self) -> Option<(Option<Imprint>, &[ShapeCount])> {
+        let &(_, key) = self.trained.examples.get(&self.cell)?;
+        let model = &self.trained.model;
+        Some((model.keys().imprint(key), model.counts(key)))
     }
 
     fn take(&mut self, message: &Message) {
@@ -152,33 +154,33 @@ impl Page for Confusion {
     }
 
     /// Returns the position of the cursor.
-    fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
+    fn draw(&self, mut canvas: Canvas<'_>, area: Rect) -> Option<Position> {
         let (panes, count) = (Panes::of(area, self), self.count());
         let (trained, confusion) = (&self.trained, &self.trained.evaluation.confusion);
         let title = format!("Confusion: {}", trained.choice);
         let limit = format!("  limit: error {}", percent(trained.evaluation.error()));
         let pieces = [(&*title, Role::Title), (&*limit, Role::Text)];
-        write::line(buffer, area, theme, pieces);
+        canvas.line(area, pieces);
         let meaning = "rows: the shape that touches; columns: its name; percent of the row";
-        write::text(buffer, write::row(area, 1), theme, meaning, Role::Quiet);
+        canvas.text(write::row(area, 1), meaning, Role::Quiet);
         let head = write::row(area, 2);
         let corner = write::left_of(head, area.x + panes.label - 1);
-        let hidden = hidden(theme, &panes, count);
-        write::text(buffer, corner, theme, &hidden, Role::Quiet);
+        let hidden = hidden(canvas.theme, &panes, count);
+        canvas.text(corner, &hidden, Role::Quiet);
         for (column, place) in panes.cells(head, count) {
             let number = format!("{:>5} ", column + 1);
-            write::text(buffer, place, theme, &number, Role::Title);
+            canvas.text(place, &number, Role::Title);
         }
         let (digits, mut cursor) = (count.to_string().len(), None);
         for (row, line) in (panes.first.0..count).zip(panes.rows.rows()) {
             let number = format!("{:>digits$} ", row + 1);
             let pieces = [(&*number, Role::Title), (trained.name(row), Role::Text)];
             let label = write::left_of(line, line.x + panes.label - 1);
-            write::line(buffer, label, theme, pieces);
+            canvas.line(label, pieces);
             let touches = confusion.touches_of(row);
             for (column, place) in panes.cells(line, count) {
                 let named = confusion.get(row, column);
-                let text = cell_text(theme, named, touches, row == column);
+                let text = cell_text(canvas.theme, named, touches, row == column);
                 let is_here = (row, column) == self.cell;
                 let role = match (is_here, row == column, named) {
                     (true, ..) => Role::Focus,
@@ -186,11 +188,11 @@ impl Page for Confusion {
                     (_, _, 0) => Role::Quiet,
                     _ => Role::Text,
                 };
-                write::text(buffer, place, theme, &text, role);
+                canvas.text(place, &text, role);
                 cursor = cursor.or(is_here.then_some(place.as_position()));
             }
         }
-        self.draw_detail(theme, &panes, buffer, area);
+        self.draw_detail(&mut canvas, &panes, area);
         cursor
     }
 
@@ -211,7 +213,7 @@ impl Page for Confusion {
 }
 
 impl Confusion {
-    fn draw_detail(&self, theme: &Theme, panes: &Panes, buffer: &mut Buffer, area: Rect) {
+    fn draw_detail(&self, canvas: &mut Canvas<'_>, panes: &Panes, area: Rect) {
         let (row, column) = self.cell;
         let (trained, confusion) = (&self.trained, &self.trained.evaluation.confusion);
         let text = format!(
@@ -222,14 +224,14 @@ impl Confusion {
             counted(confusion.touches_of(row), "touch"),
         );
         let foot = write::below(area, area.height.saturating_sub(FOOT));
-        write::text(buffer, foot, theme, &text, Role::Text);
+        canvas.text(foot, &text, Role::Text);
         let Some((imprint, counts)) = self.example() else {
             return;
         };
         let text = in_words(counts, self.cell, |shape| trained.name(shape));
-        write::text(buffer, write::row(foot, 1), theme, &text, Role::Text);
+        canvas.text(write::row(foot, 1), &text, Role::Text);
         if let (Some(area), Some(imprint)) = (panes.picture, &imprint) {
-            draw_thumbnail(theme, imprint, buffer, area);
+            draw_thumbnail(canvas.theme, imprint, canvas.buffer, area);
         }
     }
 }
@@ -261,38 +263,25 @@ fn cell_text(theme: &Theme, count: u128, touches: u128, diagonal: bool) -> Strin
     }
 }
 
-/// An example imprint for each cell of the confusion matrix: of the imprints that one shape leaves and that are named
-/// as another, the one that the first shape leaves in the most poses. All are found in advance: a model may have
-/// millions of imprints, and no key must wait for them.
-#[derive(Debug)]
-pub(super) struct Examples {
-    /// For each cell: the number of poses, and the index of the imprint in the model.
-    cells: BTreeMap<(usize, usize), (u64, usize)>,
-}
+/// For each cell of the confusion matrix the number of poses of an example, and the index of its imprint in the model.
+pub(super) type Examples = BTreeMap<(usize, usize), (u64, usize)>;
 
-impl Examples {
-    pub(super) fn of(model: &Model) -> Self {
-        let mut cells = BTreeMap::new();
-        for key in 0..model.keys().len() {
-            let (named, _) = model.most_frequent(key);
-            for own in model.counts(key) {
-                let cell = cells.entry((own.shape.into(), named)).or_insert((0, 0));
-                if own.poses > cell.0 {
-                    *cell = (own.poses, key);
-                }
+/// Of the imprints that one shape leaves and that are named as another, an example is the one that the first shape
+/// leaves in the most poses. All are found in advance: a model may have millions of imprints, and no key must wait for
+/// them.
+pub(super) fn examples(model: &Model) -> Examples {
+    let mut cells = Examples::new();
+    for key in 0..model.keys().len() {
+        let (named, _) = model.most_frequent(key);
+        for own in model.counts(key) {
+            let cell = cells.entry((own.shape.into(), named)).or_insert((0, 0));
+            if own.poses > cell.0 {
+                *cell = (own.poses, key);
             }
         }
-        Self { cells }
     }
-
-    /// Returns the imprint, cut to its box unless nothing is active, and the shapes that leave it.
-    fn get<'a>(&self, model: &'a Model, cell: (usize, usize)) -> Option<Example<'a>> {
-        let &(_, key) = self.cells.get(&cell)?;
-        Some((model.keys().imprint(key), model.counts(key)))
-    }
+    cells
 }
-
-type Example<'a> = (Option<Imprint>, &'a [ShapeCount]);
 
 /// Says which shapes leave an imprint, and in how many poses. The two shapes of its cell come first: there may be no
 /// room for all.
@@ -339,7 +328,7 @@ mod tests {
         let ranges = Ranges::default().with(Axis::Angle, "0:80:10".parse().expect("a range"));
         let training = Training::new(shapes, sensor, Anchor::Centre, ranges).expect("a set");
         let model = training.run().expect("not stopped");
-        let (examples, evaluation) = (Examples::of(&model), Evaluation::of(&model));
+        let (examples, evaluation) = (examples(&model), Evaluation::of(&model));
         for cell in (0..9).map(|cell| (cell / 3, cell % 3)) {
             let (touched, named) = cell;
             let poses = |counts: &[ShapeCount]| {
@@ -350,13 +339,13 @@ mod tests {
             let keys = 0..model.keys().len();
             let keys = keys.filter(|&key| model.most_frequent(key).0 == named);
             let most = keys.filter_map(|key| poses(model.counts(key)));
-            let example = examples.get(&model, cell);
-            let found = example.as_ref().and_then(|(_, counts)| poses(counts));
+            let example = examples.get(&cell).map(|&(_, key)| model.counts(key));
+            let found = example.and_then(poses);
             assert_eq!(found, most.max(), "{cell:?}");
             let touches = evaluation.confusion.get(touched, named);
             assert_eq!(example.is_some(), touches > 0, "{cell:?}");
             let names = ["a", "b", "c"];
-            let text = example.map(|(_, counts)| in_words(counts, cell, |shape| names[shape]));
+            let text = example.map(|counts| in_words(counts, cell, |shape| names[shape]));
             let first = format!("an imprint left by {} in ", names[touched]);
             assert!(text.is_none_or(|text| text.starts_with(&first)), "{cell:?}");
         }

@@ -2,13 +2,11 @@
 //!
 //! ```text
 //! page        the page beside the matrix: the set and its model, the touches, what keys do
-//! trained     a model, how well it tells its shapes apart, a random touch
-//! answer      what the model says about the touches, in words
-//! panel       how the page is drawn
+//! trained     a model, how well it tells its shapes apart, a random touch, the poses of a touch
+//! panel       how the page is drawn: what the model says about the touches, in words
 //! confusion   which shapes are taken for which, with an imprint that two share
 //! ```
 
-mod answer;
 pub(crate) mod confusion;
 pub(crate) mod page;
 mod panel;

@@ -21,13 +21,12 @@ use crate::tui::keys::keymap::Context;
 use crate::tui::matrix;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::recognise::RecogniseMessage;
-use crate::tui::recognise::answer::{Found, PoseSearch};
 use crate::tui::recognise::confusion::Confusion;
-use crate::tui::recognise::trained::TrainedModel;
+use crate::tui::recognise::trained::{Found, PoseSearch, TrainedModel};
 use crate::tui::widget::write::other;
 
 pub(crate) struct Recognition {
-    choice: ModelChoice,
+    pub(crate) choice: ModelChoice,
     /// The model of that set; None if it was not asked for yet, or could not be had.
     trained: Option<Arc<TrainedModel>>,
     /// Another set, or the same one, whose model is read or trained.
@@ -78,10 +77,6 @@ impl Recognition {
             outlines: None,
             random: Pcg64::seed_from_u64(seed),
         }
-    }
-
-    pub(crate) fn begin_with(&mut self, choice: ModelChoice) {
-        self.choice = choice;
     }
 
     pub(super) fn choice(&self) -> &ModelChoice {
@@ -280,9 +275,18 @@ fn carry_out(app: &mut App, asked: RecogniseMessage, is_open: bool) {
         RecogniseMessage::Keep => keep(app),
         RecogniseMessage::Forget => forget(app),
         RecogniseMessage::Touch | RecogniseMessage::Confusion | RecogniseMessage::Poses => {
-            match app.recognition.model().cloned() {
-                Some(trained) => with_model(app, &asked, trained),
-                None => wait_for_model(app, asked),
+            let page = &mut app.recognition;
+            match (page.model().cloned(), &mut page.preparing) {
+                (Some(trained), _) => match asked {
+                    RecogniseMessage::Touch => touch(app, &trained),
+                    RecogniseMessage::Poses => show_poses(app),
+                    _ => app.open(Confusion::new(trained)),
+                },
+                (None, Some(preparing)) if !preparing.stopping => {
+                    preparing.request = Some(asked);
+                    inform(app, "a model is prepared first");
+                }
+                _ => refuse(app, "the model is not prepared yet"),
             }
         }
         _ => {}
@@ -338,15 +342,10 @@ fn prepare(app: &mut App, choice: Option<ModelChoice>, opened: bool) {
 fn take_model(app: &mut App, stored: Vec<Name>, trained: Result<Arc<TrainedModel>, String>) {
     let page = &mut app.recognition;
     page.stored = stored;
-    let Some(Preparation {
-        choice,
-        request,
-        opened,
-        ..
-    }) = page.preparing.take()
-    else {
+    let Some(preparing) = page.preparing.take() else {
         return;
     };
+    let choice = preparing.choice;
     let is_other = choice.is_read() && choice != page.choice;
     match trained {
         Ok(trained) => {
@@ -360,7 +359,7 @@ fn take_model(app: &mut App, stored: Vec<Name>, trained: Result<Arc<TrainedModel
             (page.trained, page.unreadable) = (Some(trained), None);
             page.ask();
             let has_keys = app.top_mut::<RecognisePage>().is_some();
-            if let Some(request) = request.filter(|_| has_keys) {
+            if let Some(request) = preparing.request.filter(|_| has_keys) {
                 // A notice that it is not ready, or is prepared first, would be wrong now.
                 inform(app, "the model is ready");
                 act(app, request);
@@ -373,32 +372,12 @@ fn take_model(app: &mut App, stored: Vec<Name>, trained: Result<Arc<TrainedModel
                 (page.choice, page.trained) = (choice, None);
             }
             page.ask();
-            if is_other && opened {
+            if is_other && preparing.opened {
                 app.pages.retain(|page| !page.is::<RecognisePage>());
                 close(app);
             }
             refuse(app, reason);
         }
-    }
-}
-
-fn wait_for_model(app: &mut App, asked: RecogniseMessage) {
-    match &mut app.recognition.preparing {
-        Some(preparing) if !preparing.stopping => {
-            preparing.request = Some(asked);
-            inform(app, "a model is prepared first");
-        }
-        _ => refuse(app, "the model is not prepared yet"),
-    }
-}
-
-fn with_model(app: &mut App, asked: &RecogniseMessage, trained: Arc<TrainedModel>) {
-    match asked {
-        RecogniseMessage::Touch => touch(app, &trained),
-        RecogniseMessage::Confusion => {
-            app.open(Confusion::new(trained));
-        }
-        _ => show_poses(app),
     }
 }
 

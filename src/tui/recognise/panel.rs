@@ -18,9 +18,10 @@
 
 use ratatui::layout::{Position, Rect};
 use taxel_core::imprint::Imprint;
-use taxel_core::parameter::number::{share, short};
+use taxel_core::parameter::number::{differing, share, short};
 use taxel_core::pose::Axis;
-use taxel_files::formats::value::{counted, decimal, grouped, percent};
+use taxel_core::recognition::{Answer, AnswerState, Nearest, PoseEstimate};
+use taxel_files::formats::value::{self, counted, decimal, grouped, percent};
 
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Canvas, Flow, Page, Place, PoseLayer};
@@ -29,9 +30,8 @@ use crate::tui::explore::work::gauge;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::Context;
 use crate::tui::recognise::RecogniseMessage;
-use crate::tui::recognise::answer::{details, verdict};
 use crate::tui::recognise::page::{Preparation, Recognition};
-use crate::tui::recognise::trained::TrainedModel;
+use crate::tui::recognise::trained::{Found, TrainedModel};
 use crate::tui::widget::theme::Role;
 use crate::tui::widget::write::{self, narrow};
 
@@ -272,6 +272,93 @@ impl Panel<'_> {
         ];
         self.canvas.line(row, pieces);
     }
+}
+
+/// Returns the answer in a word, and the shapes that it names.
+fn verdict(answer: &Answer, touches: usize, trained: &TrainedModel) -> String {
+    let named = match answer.state {
+        AnswerState::Tied => &answer.tied[..],
+        _ => answer.shape.as_slice(),
+    };
+    let names: Vec<&str> = named.iter().map(|&shape| trained.name(shape)).collect();
+    let what = match (names.is_empty(), touches) {
+        (false, _) => names.join(", "),
+        (true, ..=1) => "no shape leaves this imprint".to_owned(),
+        (true, _) => "no shape leaves all of these".to_owned(),
+    };
+    let rim = if answer.at_rim {
+        " (at the rim, perhaps cut off)"
+    } else {
+        ""
+    };
+    format!("{}: {what}{rim}", answer.state.name())
+}
+
+/// Returns the lines about the touch on the matrix.
+fn details(
+    present: &Imprint,
+    found: &Found,
+    answer: &Answer,
+    trained: &TrainedModel,
+) -> Vec<(String, Role)> {
+    let mut lines = Vec::new();
+    match &found.nearest {
+        None => {
+            let text = "no imprint of the model fits the matrix".to_owned();
+            lines.push((text, Role::Text));
+        }
+        Some(nearest) if nearest.distance > 0 => {
+            let (name, differ) = (trained.name(nearest.shape), differing(nearest.distance));
+            lines.push((format!("nearest: {name}, {differ}"), Role::Text));
+            lines.push((legend(present, nearest), Role::Quiet));
+        }
+        Some(_) => {}
+    }
+    if let Some((shape, pose)) = &found.pose {
+        let centre = format!("centre {} cells", value::pose_centre(pose, 1.0));
+        // If shapes are tied, the pose is that of the first.
+        let is_named = answer.state != AnswerState::Tied && answer.shape == Some(*shape);
+        let centre = if is_named {
+            centre
+        } else {
+            format!("{} {centre}", trained.name(*shape))
+        };
+        lines.push((centre, Role::Text));
+        lines.extend(angle(pose).map(|line| (line, Role::Text)));
+    }
+    lines
+}
+
+fn legend(present: &Imprint, nearest: &Nearest) -> String {
+    let differing = present.differing(&nearest.imprint);
+    let surplus = differing.active();
+    let surplus = surplus.filter(|&(column, row)| present.get(column, row));
+    let surplus = surplus.count();
+    let missing = differing.count() as usize - surplus;
+    match (surplus, missing) {
+        (_, 0) => format!("+ {surplus} surplus"),
+        (0, _) => format!("- {missing} missing"),
+        _ => format!("+ {surplus} surplus, - {missing} missing"),
+    }
+}
+
+/// Returns mean and spread of the angle, and how many poses leave the imprint.
+fn angle(pose: &PoseEstimate) -> [String; 2] {
+    let known = pose.angle.as_ref();
+    let known = known.and_then(|angle| Some((angle, angle.known()?)));
+    let Some((angle, (mean, spread))) = known else {
+        return ["any angle".to_owned(), counted(pose.poses, "pose")];
+    };
+    // A half is rounded up: symmetric shapes often have such a mean, and formatting alone rounds to even.
+    let (mean, spread) = (
+        decimal((mean + 0.5).floor(), 0),
+        value::pose_spread(spread, 1),
+    );
+    let repeats = value::pose_repeats(angle);
+    [
+        format!("angle {mean}° ± {spread}°{repeats}"),
+        value::pose_arc(angle, pose.poses),
+    ]
 }
 
 /// Returns the full columns of a bar; a value above 0 has at least one.

@@ -1,4 +1,4 @@
-//! A trained model, with what the screen shows about it as a whole.
+//! A trained model, with what the screen shows about it as a whole, and its search for the poses of a touch.
 
 use std::sync::Arc;
 use std::time::SystemTime;
@@ -7,14 +7,15 @@ use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
 use taxel_core::imprint::Imprint;
 use taxel_core::pose::{Axis, DecimalRange, PoseGrid, Ranges};
-use taxel_core::recognition::{Evaluation, Model, below};
+use taxel_core::recognition::{Evaluation, Model, Nearest, PlacedSource, PoseEstimate, below};
 use taxel_core::sensor::Sensor;
 use taxel_core::touch::Plane;
+use taxel_files::memory::MemoryGuard;
 use taxel_files::storage::{ModelChoice, Models};
 
 use crate::tui::jobs::JobProgress;
 use crate::tui::models;
-use crate::tui::recognise::confusion::Examples;
+use crate::tui::recognise::confusion::{Examples, examples};
 
 #[derive(Debug)]
 pub(crate) struct TrainedModel {
@@ -54,7 +55,7 @@ impl TrainedModel {
         let model = models::ready(models, choice.clone(), begins, progress)?;
         Ok(Arc::new(Self {
             evaluation: Evaluation::of(&model),
-            examples: Examples::of(&model),
+            examples: examples(&model),
             unknown_between: unknown_between(&model),
             choice,
             model,
@@ -63,8 +64,7 @@ impl TrainedModel {
     }
 
     pub(super) fn name(&self, shape: usize) -> &str {
-        let shape = self.model.shapes().get(shape);
-        shape.map_or("", |shape| &shape.name)
+        &self.model.shapes()[shape].name
     }
 
     /// Touches with a random shape, with a probability in proportion to its weight, in a random pose of the grid.
@@ -123,6 +123,55 @@ fn moved_onto(imprint: &Imprint, sensor: &Sensor) -> Option<Imprint> {
 fn grid_of(model: &Model, shape: usize, ranges: Ranges) -> Option<PoseGrid> {
     let source = model.shapes().get(shape)?.source.clone();
     PoseGrid::new(source, *model.sensor(), model.anchor(), ranges).ok()
+}
+
+/// The largest number of poses whose outlines are drawn; more cannot be told apart over a matrix.
+const POSES: usize = 13;
+
+#[derive(Clone)]
+pub(super) struct PoseSearch {
+    pub(super) trained: Arc<TrainedModel>,
+    pub(super) imprint: Imprint,
+    /// The shape that the answer names.
+    pub(super) named: Option<usize>,
+}
+
+impl PartialEq for PoseSearch {
+    fn eq(&self, other: &Self) -> bool {
+        let same_model = Arc::ptr_eq(&self.trained, &other.trained);
+        same_model && (self.imprint, self.named) == (other.imprint, other.named)
+    }
+}
+
+pub(super) struct Found {
+    pub(super) nearest: Option<Nearest>,
+    /// The named shape, or that of the nearest imprint if none is named, and the poses in which it leaves the nearest
+    /// imprint.
+    pub(super) pose: Option<(usize, PoseEstimate)>,
+    pub(super) poses: Vec<PlacedSource>,
+    pub(super) refused: Option<String>,
+}
+
+impl PoseSearch {
+    pub(super) fn run(&self, progress: &JobProgress) -> Found {
+        let model = &self.trained.model;
+        let nearest = model.nearest(&self.imprint);
+        let memory = MemoryGuard::new(None, "train the model in coarser steps to see poses");
+        let found = memory.limit(progress, |progress| {
+            let nearest = nearest.as_ref()?;
+            let shape = self.named.unwrap_or(nearest.shape);
+            let (pose, poses) = model.poses_of(shape, &nearest.imprint, POSES, progress)?;
+            Some(((shape, pose), poses))
+        });
+        let refused = found.as_ref().err().cloned();
+        let (pose, poses) = found.ok().flatten().unzip();
+        Found {
+            nearest,
+            pose,
+            poses: poses.unwrap_or_default(),
+            refused,
+        }
+    }
 }
 
 fn unknown_between(model: &Model) -> Option<(u64, u64)> {
