@@ -71,11 +71,8 @@ fn perform(arguments: Vec<OsString>) -> Result<(), Failure> {
         Ok(matches) => matches,
         Err(error) if error.use_stderr() => return Err(error.into()),
         Err(help) => {
-            return write(
-                Charset::current()
-                    .lines(&help.render().to_string())
-                    .as_bytes(),
-            );
+            let help = help.render().to_string();
+            return write(Charset::current().lines(&help).as_bytes());
         }
     };
     let program = Program::from_arg_matches(&matches)?;

@@ -50,7 +50,7 @@ pub struct Settings {
     /// The folder of the library; None if the user has no home and nothing names another folder.
     #[serde(deserialize_with = "below", serialize_with = "absolute")]
     pub(crate) library: Option<PathBuf>,
-    sensor: SensorSettings,
+    pub(crate) sensor: SensorSettings,
     #[serde(deserialize_with = "whole_size")]
     pub(crate) source: SourceSettings,
     #[serde(deserialize_with = "one_rule")]
@@ -81,10 +81,10 @@ impl Default for Settings {
 /// The sensor of simulated touches.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 #[serde(try_from = "SensorTable", into = "SensorTable")]
-struct SensorSettings {
-    sensor: Sensor,
+pub(crate) struct SensorSettings {
+    pub(crate) sensor: Sensor,
     /// The pitch in mm, if it is set. With the default pitch, nothing is shown in mm.
-    pitch: Option<f64>,
+    pub(crate) pitch: Option<f64>,
 }
 
 #[derive(Default, Deserialize, Serialize)]
@@ -204,7 +204,7 @@ impl Default for FrameSettings {
 
 impl FrameSettings {
     /// The threshold, or None if none is set; the error says what is expected.
-    fn checked_rule(&self) -> Result<Option<Rule>, String> {
+    fn rule(&self) -> Result<Option<Rule>, String> {
         let rule = match (self.at_least, self.percent, self.low, self.high) {
             (None, None, None, None) => return Ok(None),
             (Some(threshold), None, None, None) => Rule::at_least(threshold),
@@ -213,10 +213,6 @@ impl FrameSettings {
             _ => return Err("expected at_least, percent, or low and high".to_owned()),
         };
         rule.map(Some).map_err(|error| error.to_string())
-    }
-
-    pub(crate) fn rule(&self) -> Option<Rule> {
-        self.checked_rule().ok().flatten()
     }
 }
 
@@ -236,10 +232,8 @@ impl TryFrom<String> for Place {
     type Error = String;
 
     fn try_from(name: String) -> Result<Self, String> {
-        let known = Context::all().find(|own| own.name() == name);
-        known
-            .map(Self)
-            .ok_or_else(|| format!("no place named {name:?}; 'taxel config' lists them"))
+        let known = Context::all().find(|own| own.name() == name).map(Self);
+        known.ok_or_else(|| format!("no place named {name:?}; 'taxel config' lists them"))
     }
 }
 
@@ -258,12 +252,13 @@ impl TryFrom<String> for BoundKey {
     type Error = String;
 
     fn try_from(text: String) -> Result<Self, String> {
-        let is_one = parse(&text).is_ok_and(|keys| keys.len() == 1);
-        is_one.then_some(Self(text.clone())).ok_or_else(|| {
-            format!(
-                "{text:?} is not a key that can be bound, expected one such as x, <Tab> or <C-x>"
-            )
-        })
+        if parse(&text).is_ok_and(|keys| keys.len() == 1) {
+            return Ok(Self(text));
+        }
+        let expected = "expected one such as x, <Tab> or <C-x>";
+        Err(format!(
+            "{text:?} is not a key that can be bound, {expected}"
+        ))
     }
 }
 
@@ -353,20 +348,18 @@ impl Settings {
             let mut file = file.take(MAX_BYTES + 1);
             file.read_to_string(&mut text)
         });
+        let too_large = "larger than 64 KiB, the limit for a file of settings";
         let settings = match read {
             Err(error) if may_be_missing && is_missing(&error) => Ok(Self::default()),
             Err(error) => Err(error).named("cannot read"),
-            Ok(length) if length as u64 > MAX_BYTES => Err(Failure::new(
-                "larger than 64 KiB, the limit for a file of settings",
-            )),
+            Ok(length) if length as u64 > MAX_BYTES => Err(Failure::new(too_large)),
             Ok(_) => Self::read(&text).map_err(Failure::new),
         };
+        let settings = settings.named(path.display());
         let is_there = path.exists();
         Ok(Self {
-            file: Some((path.clone(), is_there)),
-            ..settings
-                .named(path.display())
-                .map_err(|failure| failure.with_status(2))?
+            file: Some((path, is_there)),
+            ..settings.map_err(|failure| failure.with_status(2))?
         })
     }
 
@@ -398,35 +391,22 @@ impl Settings {
         })
     }
 
-    pub(crate) fn sensor(&self) -> Sensor {
-        self.sensor.sensor
-    }
-
-    /// The pitch in mm, if the file or a flag sets it.
-    pub(crate) fn pitch(&self) -> Option<f64> {
-        self.sensor.pitch
-    }
-
     pub fn keymap(&self) -> &Keymap {
         &self.keys.keymap
-    }
-
-    /// Gives the settings for streams to what is asked of a source.
-    pub(crate) fn apply(&self, options: &mut AcquireOptions) {
-        options.stream_format = self.source.format.0.or(options.stream_format);
-        options.baud = self.source.baud.or(options.baud);
-        options.stream_size = FrameSize::of_sides(self.source.columns, self.source.rows);
     }
 
     /// What `:watch SOURCE` on the screen begins with.
     pub(crate) fn watch_request(&self) -> WatchRequest {
         let mut request = WatchRequest::new("");
-        self.apply(&mut request.options);
-        let least = self.frames.least.unwrap_or_default();
-        let from = RuleOrigin::Settings;
+        let (source, options) = (&self.source, &mut request.options);
+        options.stream_format = source.format.0;
+        options.baud = source.baud.or(options.baud);
+        options.stream_size = FrameSize::of_sides(source.columns, source.rows);
+        let (least, from) = (self.frames.least.unwrap_or_default(), RuleOrigin::Settings);
         let mut processing = Processing::default();
         processing.least = least;
-        let rule = self.frames.rule();
+        // It was checked when it was read.
+        let rule = self.frames.rule().ok().flatten();
         processing.apply_rule(rule.map(|rule| SetRule { rule, least, from }));
         request.pipeline = Pipeline::new(processing, self.frames.tare, from);
         request.history_bytes = self.frames.history_bytes;
@@ -522,10 +502,10 @@ where
     D: Deserializer<'de>,
 {
     let number = i64::deserialize(from)?;
-    let number = (LEAST..=MOST).contains(&number).then_some(number);
-    let number = number.and_then(|number| T::try_from(number).ok());
-    let expected = || format!("expected a whole number from {LEAST} to {MOST}");
-    number.map(Some).ok_or_else(|| D::Error::custom(expected()))
+    let allowed = (LEAST..=MOST).contains(&number).then_some(number);
+    let expected = || D::Error::custom(format!("expected a whole number from {LEAST} to {MOST}"));
+    let number = allowed.and_then(|number| T::try_from(number).ok());
+    number.map(Some).ok_or_else(expected)
 }
 
 fn history<'de, D: Deserializer<'de>>(from: D) -> Result<usize, D::Error> {
@@ -546,7 +526,7 @@ fn whole_size<'de, D: Deserializer<'de>>(from: D) -> Result<SourceSettings, D::E
 
 fn one_rule<'de, D: Deserializer<'de>>(from: D) -> Result<FrameSettings, D::Error> {
     let own = FrameSettings::deserialize(from)?;
-    own.checked_rule().map_err(D::Error::custom)?;
+    own.rule().map_err(D::Error::custom)?;
     Ok(own)
 }
 
@@ -562,10 +542,10 @@ fn below<'de, D: Deserializer<'de>>(from: D) -> Result<Option<PathBuf>, D::Error
 /// Writes the folder so that it means the same from everywhere.
 #[expect(clippy::ref_option, reason = "serde passes it so")]
 fn absolute<S: Serializer>(folder: &Option<PathBuf>, to: S) -> Result<S::Ok, S::Error> {
-    let absolute =
-        |folder: &PathBuf| std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
-    let folder = folder.as_ref().map(absolute);
-    folder
+    let absolute = folder
+        .as_ref()
+        .map(|own| std::path::absolute(own).unwrap_or(own.clone()));
+    absolute
         .map(|own| own.to_string_lossy().into_owned())
         .serialize(to)
 }

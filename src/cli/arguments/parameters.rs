@@ -207,7 +207,7 @@ impl Given {
         let given = self.fold(&[Parameter::Pitch], None, |_, parameter, value| {
             Sensor::LARGEST.check(parameter, value).map(Some)
         })?;
-        let usual = settings.pitch();
+        let usual = settings.sensor.pitch;
         Ok(Pitch { given, usual })
     }
 

@@ -52,7 +52,7 @@ pub(crate) struct Batch {
 
 impl Batch {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
-        let sensor = self.sensor.sensor(cx.settings.sensor())?;
+        let sensor = self.sensor.sensor(cx.settings.sensor.sensor)?;
         let lookup = |name: &str| cx.shelf.imprint(name).map_err(|error| error.to_string());
         let input = Input::open(&self.file)?;
         let jobs = self.jobs.unwrap_or(0).into();

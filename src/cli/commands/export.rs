@@ -217,10 +217,6 @@ impl Kept {
         }
     }
 
-    pub(crate) fn is_asked(&self) -> bool {
-        self.save.is_some() || self.export.is_some()
-    }
-
     /// Keeps a touch: the file is written, then the shape is stored, then the file gets its name, which hardly ever
     /// fails. So both are kept or neither. Notes of what was kept are added to `notes`. Returns the content for
     /// standard output that takes the place of the answer, if any.

@@ -44,7 +44,7 @@ pub(crate) struct Figure {
 
 impl Figure {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
-        let sensor = self.sensor.sensor(cx.settings.sensor())?;
+        let sensor = self.sensor.sensor(cx.settings.sensor.sensor)?;
         let figure = Source::Figure(self.values.figure(self.kind, &sensor)?);
         let pitch = self.sensor.pitch(&cx.settings)?.of(Some(&sensor));
         touch(

@@ -658,7 +658,7 @@ impl Answering<'_> {
         frames: u64,
     ) -> Result<(), Failure> {
         if let ([first, second, ..], Some(label)) = (numbers, &self.asked.label)
-            && self.kept.is_asked()
+            && (self.kept.save.is_some() || self.kept.export.is_some())
         {
             return Err(self.refused(format!(
                 "frames {} and {} are both labelled {label}; choose one with --frame",

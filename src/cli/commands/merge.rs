@@ -14,10 +14,9 @@ use taxel_files::storage::{self, check_writable, load_atlas, load_model, save_mo
 use crate::cli::Context;
 use crate::cli::commands::export::{replacing, written};
 use crate::cli::commands::model::{fits_in_table, model_file};
-use crate::cli::commands::sweep::atlas;
+use crate::cli::commands::sweep::{atlas, summary};
 use crate::cli::failure::{Failure, Named};
 use crate::cli::output::evaluation::{self, NamedBy};
-use crate::cli::output::sweep_summary;
 
 const EXAMPLES: &str = "\
 All shards together give the same atlas as one sweep of the whole grid, or the
@@ -86,7 +85,7 @@ impl Merge {
                 memory.check().map_err(Failure::new)?;
             }
             let result = merge.finish()?;
-            let text = sweep_summary::of(&result, start.elapsed(), self.json);
+            let text = summary(&result, start.elapsed(), self.json);
             let file = write_atlas(&self.out, &result, existing);
             (text, file.and_then(|file| file.persist().map(drop)))
         };

@@ -96,7 +96,7 @@ pub(crate) fn open(
     };
     let terminal = TerminalSettings::from_environment(std::env::var_os, &flags);
     let options = Options {
-        sensor: settings.sensor(),
+        sensor: settings.sensor.sensor,
         theme: terminal.theme,
         // A different seed each time.
         seed: RandomState::new().hash_one(0),

@@ -154,7 +154,7 @@ impl Script {
         };
         let options = ScriptOptions {
             options: Options {
-                sensor: cx.settings.sensor(),
+                sensor: cx.settings.sensor.sensor,
                 theme,
                 seed: 0,
             },

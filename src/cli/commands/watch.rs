@@ -120,11 +120,9 @@ impl Watch {
         check(&source, &request)?;
         // The recording is created and dropped again: no file appears before the first frame.
         drop(recording(&source, &request)?);
-        let choice = request
-            .model
-            .take()
-            .map(|model| model::models(&cx.shelf).locate(model));
-        request.model = choice.transpose()?;
+        if let Some(model) = request.model {
+            request.model = Some(model::models(&cx.shelf).locate(model)?);
+        }
         screen::watch(cx, &self.look, request)
     }
 }
@@ -176,10 +174,9 @@ fn watch(request: &WatchRequest, naming: &NamingFlags, cx: &Context) -> Result<(
     let stopped = !signals.goes_on();
     watcher.finish(failed, acquired, stopped)?;
     if stopped {
-        Err(Failure::silent(signals.status()))
-    } else {
-        Ok(())
+        return Err(Failure::silent(signals.status()));
     }
+    Ok(())
 }
 
 /// Refuses flags that have no effect for a source: those of serial lines for others, those of playing for a stream,
@@ -279,7 +276,11 @@ impl Watcher<'_> {
             AcquireEvent::Frame { frame, time } => return self.add_frame(frame, time),
             AcquireEvent::Tick(counts) => {
                 self.record(FrameRecorder::tick)?;
-                if self.lines.as_ref().is_some_and(LineWriter::has_ended) {
+                if self
+                    .lines
+                    .as_ref()
+                    .is_some_and(|own| own.thread.is_finished())
+                {
                     self.end_lines()?;
                 }
                 if self.reported.is_none_or(|last| last.elapsed() >= REPORT) {
@@ -364,11 +365,8 @@ impl Watcher<'_> {
         let mut frame = frame.clone();
         frame.time = time;
         // A sensor that was lost may come back with another size: then the tare begins again with its frames.
-        match self
-            .pipeline
-            .add_to_tare(&frame)
-            .map_err(|error| self.refused(error))?
-        {
+        let taring = self.pipeline.add_to_tare(&frame);
+        match taring.map_err(|error| self.refused(error))? {
             Taring::Done => return self.answer(&frame),
             Taring::LeftOut(error) if self.waiting.is_empty() => return Err(self.refused(error)),
             Taring::Again => {
@@ -495,10 +493,11 @@ impl Watcher<'_> {
         if counts.bytes == 0 {
             return Err(self.refused("empty, expected frames of a sensor"));
         }
-        let advice = match counts.reason {
-            None => "; check --rows, --columns and --format",
-            Some(_) => "",
-        };
+        let advice = counts
+            .reason
+            .is_none()
+            .then_some("; check --rows, --columns and --format");
+        let advice = advice.unwrap_or_default();
         Err(self.refused(format!("{why}{advice}{}", self.format_advice())))
     }
 
@@ -538,12 +537,11 @@ impl Watcher<'_> {
         if let (Some(failure), Some(recording)) =
             (failed.as_ref().or(damage.as_ref()), &self.recording)
         {
-            let noted = |recorder: &mut FrameRecorder| {
+            // Nothing is written yet.
+            let _ = recording.write(|recorder: &mut FrameRecorder| {
                 recorder.note_reason(&failure.text);
                 Ok(())
-            };
-            // Nothing is written yet.
-            let _ = recording.write(noted);
+            });
         }
         if ended_well {
             failed = failed.or_else(|| self.unfinished());
@@ -567,11 +565,7 @@ impl Watcher<'_> {
         if let Some(lacking) = self.pipeline.lacking() {
             return Some(self.refused(self.pipeline.explained(&lacking)));
         }
-        let missing = || {
-            self.channels
-                .missing()
-                .unwrap_or_else(|| "no frames".to_owned())
-        };
+        let missing = || self.channels.missing().unwrap_or("no frames".to_owned());
         (!self.has_frame).then(|| self.refused(missing()))
     }
 
@@ -631,10 +625,6 @@ impl LineWriter {
             stopped: Arc::clone(stopped),
             given_up: 0,
         })
-    }
-
-    fn has_ended(&self) -> bool {
-        self.thread.is_finished()
     }
 
     /// Sends a line. If too many are waiting, it waits until there is room, or drops the line if `may_give_up`; after

@@ -1,7 +1,7 @@
 //! Opens recordings: files, or standard input; a pipe is copied to a temporary file because a recording is read
 //! several times.
 
-use std::fmt::{self, Debug, Display};
+use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::ControlFlow;
@@ -12,6 +12,7 @@ use std::path::Path;
 use taxel_core::frame::{Frame, View};
 use taxel_core::imprint::Imprint;
 use taxel_core::matrix::Matrix;
+use taxel_core::progress::stop_if;
 use taxel_core::quote::shortened_message;
 use taxel_core::sensor::MatrixSize;
 use taxel_files::acquire::metadata_beside;
@@ -29,7 +30,6 @@ use crate::cli::input::content::{self, Input, input_name};
 /// The most bytes that are read of a table. A table of 64 × 64 factors is much smaller.
 const LARGEST_TABLE: u64 = 1 << 20;
 
-#[derive(Debug)]
 pub(crate) struct RecordingFile {
     pub(crate) name: String,
     file: Box<dyn ReadAgain>,
@@ -70,11 +70,11 @@ impl RecordingFile {
 
     /// Refuses to write to the recording, under any path: a recording cannot be made again.
     pub(crate) fn refuse_as_target(&self, target: &Path) -> Result<(), Failure> {
-        let is_own = FileId::behind(target).is_ok_and(|id| id == self.id);
-        let why = "is the recording being read; export to another file";
-        (!is_own)
-            .then_some(())
-            .ok_or_else(|| refused(&target.to_string_lossy(), why))
+        if FileId::behind(target).is_ok_and(|id| id == self.id) {
+            let why = "is the recording being read; export to another file";
+            return Err(refused(&target.to_string_lossy(), why));
+        }
+        Ok(())
     }
 
     pub(crate) fn read(
@@ -109,7 +109,7 @@ impl RecordingFile {
         });
         match (failed, read) {
             (Some(failed), _) => Err(failed),
-            (None, Err(error)) if !self.is_damaged => Err(self.damaged(&error)),
+            (None, Err(error)) if !self.is_damaged => Err(damaged(&self.name, &error)),
             _ => Ok(()),
         }
     }
@@ -120,11 +120,8 @@ impl RecordingFile {
         let read = self.read(&mut |event| {
             if let RecordingEvent::Channel(info) = event {
                 names.push(info.shown_name().to_owned());
-                if up_to == Some(info.shown_name()) {
-                    return ControlFlow::Break(());
-                }
             }
-            ControlFlow::Continue(())
+            stop_if(up_to.is_some() && names.last().map(String::as_str) == up_to)
         });
         (names, read.is_ok())
     }
@@ -132,14 +129,6 @@ impl RecordingFile {
     pub(crate) fn format(&mut self) -> Option<&'static Format> {
         self.file.rewind().ok()?;
         format_of(&mut self.file, &self.options).ok()
-    }
-
-    pub(crate) fn damaged(&self, error: &ReadError) -> Failure {
-        damaged(&self.name, error)
-    }
-
-    pub(crate) fn refused(&self, why: impl Display) -> Failure {
-        refused(&self.name, why)
     }
 }
 
@@ -177,17 +166,15 @@ fn unended(path: &Path, metadata: &RecordingMetadata) -> Option<String> {
     Some(format!("{beside}: the recording ended early: {reason}"))
 }
 
-trait ReadAgain: Read + Seek + Debug {}
+trait ReadAgain: Read + Seek {}
 
-impl<T: Read + Seek + Debug> ReadAgain for T {}
+impl<T: Read + Seek> ReadAgain for T {}
 
 fn opened(path: &Path) -> io::Result<(FileId, Box<dyn ReadAgain>)> {
     let (file, rest): (File, Box<dyn Read>) = if path.as_os_str() == "-" {
         let input = content::standard()?;
-        (
-            File::from(input.as_fd().try_clone_to_owned()?),
-            Box::new(input),
-        )
+        let file = input.as_fd().try_clone_to_owned()?;
+        (file.into(), Box::new(input))
     } else {
         let file = File::open(path)?;
         (file.try_clone()?, Box::new(file))
@@ -241,19 +228,10 @@ impl SpooledInput {
 }
 
 fn not_copied(error: &io::Error) -> io::Error {
-    let folder = std::env::temp_dir();
-    let text = format!(
-        "cannot keep a copy in {} (TMPDIR): {}",
-        folder.display(),
-        system_reason(error)
-    );
+    let (folder, reason) = (std::env::temp_dir(), system_reason(error));
+    let folder = folder.display();
+    let text = format!("cannot keep a copy in {folder} (TMPDIR): {reason}");
     io::Error::new(error.kind(), text)
-}
-
-impl Debug for SpooledInput {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("SpooledInput").finish_non_exhaustive()
-    }
 }
 
 impl Read for SpooledInput {
@@ -305,10 +283,7 @@ pub(crate) fn gain(path: &Path) -> Result<Matrix<f64>, Failure> {
         if let RecordingEvent::Frame(frame) = event {
             frames.push(View::default().apply_to(frame, &mut gain));
         }
-        match frames.len() {
-            0 | 1 => ControlFlow::Continue(()),
-            _ => ControlFlow::Break(()),
-        }
+        stop_if(frames.len() > 1)
     };
     let unclear = [ReadErrorKind::Unsized, ReadErrorKind::UnknownFormat];
     let read = match file.read(&mut take) {
@@ -320,17 +295,17 @@ pub(crate) fn gain(path: &Path) -> Result<Matrix<f64>, Failure> {
         },
         read => read.map(drop),
     };
-    let is_unsized = |error: &ReadError| error.kind == ReadErrorKind::Unsized;
+    let refused = |why| Err(refused(&file.name, why));
     match (read, frames.pop()) {
-        (Err(error), _) if is_unsized(&error) => {
-            Err(file.refused("expected a table: a line for each row"))
+        (Err(error), _) if error.kind == ReadErrorKind::Unsized => {
+            refused("expected a table: a line for each row")
         }
-        (Err(error), _) => Err(file.damaged(&error)),
+        (Err(error), _) => Err(damaged(&file.name, &error)),
         (Ok(()), Some(_)) if !frames.is_empty() => {
-            Err(file.refused("a recording of several frames, expected a table of factors"))
+            refused("a recording of several frames, expected a table of factors")
         }
-        (Ok(()), Some(taken)) => taken.map(|()| gain).map_err(|error| file.refused(error)),
-        (Ok(()), None) => Err(file.refused("no frame, expected a table of factors")),
+        (Ok(()), Some(taken)) => taken.map(|()| gain).named(&file.name),
+        (Ok(()), None) => refused("no frame, expected a table of factors"),
     }
 }
 

@@ -4,8 +4,6 @@ pub(super) mod charset;
 
 pub(super) mod report;
 
-pub(super) mod sweep_summary;
-
 pub(super) mod progress;
 
 pub(super) mod evaluation;

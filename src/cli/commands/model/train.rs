@@ -19,12 +19,12 @@ use crate::cli::arguments::parameters::{FittingSensorFlags, RangeFlags};
 use crate::cli::commands::export::replacing;
 use crate::cli::commands::model::keeping::card;
 use crate::cli::commands::model::{SetFlags, folder, model_file, positions, trained};
+use crate::cli::commands::sweep::ranges_in_words;
 use crate::cli::failure::Failure;
 use crate::cli::input::shapes;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::charset::note;
 use crate::cli::output::evaluation::{self, NamedBy};
-use crate::cli::output::sweep_summary::ranges_in_words;
 
 const EXAMPLES: &str = r#"A line of JSON is a shape as for 'taxel batch', but with a name and no pose:
   {"name":"disc","figure":"ellipse","radius_x":3,"radius_y":3}
