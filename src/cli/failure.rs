@@ -38,12 +38,6 @@ impl Failure {
         Self::new(text).with_status(2)
     }
 
-    pub(crate) fn of_arguments(error: &clap::Error) -> Self {
-        let text = error.render().to_string();
-        let text = text.strip_prefix("error: ").unwrap_or(&text);
-        Self::usage(text.trim_end()).with_lines()
-    }
-
     /// Puts the flag that gave a file before the file's name.
     pub(crate) fn of_flag(mut self, flag: &str) -> Self {
         self.text = format!("{flag} {}", self.text);
@@ -97,7 +91,9 @@ impl<E: Error + 'static> From<E> for Failure {
             let is_closed_pipe = error.kind() == ErrorKind::BrokenPipe;
             Self::new(system_reason(error)).with_status(u8::from(!is_closed_pipe))
         } else if let Some(error) = any.downcast_ref::<clap::Error>() {
-            Self::of_arguments(error)
+            let text = error.render().to_string();
+            let text = text.strip_prefix("error: ").unwrap_or(&text);
+            Self::usage(text.trim_end()).with_lines()
         } else if let Some(error) = any.downcast_ref::<FileError>().filter(|own| own.exists()) {
             let path = error.path.to_string_lossy();
             Self::new(format!("{path:?} already exists; --force replaces it"))

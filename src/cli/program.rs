@@ -67,13 +67,8 @@ pub(super) struct Program {
 #[derive(Debug, Args)]
 pub(super) struct Global {
     /// The library's folder
-    #[arg(
-        long,
-        global = true,
-        value_name = "DIR",
-        help_heading = "Library",
-        display_order = 900
-    )]
+    #[arg(long, global = true, value_name = "DIR", display_order = 900)]
+    #[arg(help_heading = "Library")]
     pub(super) library: Option<PathBuf>,
     /// Use this settings file instead of your own
     #[arg(long, global = true, value_name = "FILE", display_order = 901)]

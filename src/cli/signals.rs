@@ -9,8 +9,10 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::flag;
 use taxel_core::progress::{Progress, stop_if};
+use taxel_files::memory::MemoryGuard;
 
 use crate::cli::failure::Failure;
+use crate::cli::output::progress::ProgressDisplay;
 
 const STOPPING: [(i32, u8); 3] = [(SIGINT, 130), (SIGTERM, 143), (SIGHUP, 129)];
 
@@ -77,6 +79,21 @@ impl Signals {
     pub(crate) fn status(&self) -> u8 {
         STOPPING[self.last.load(Ordering::Relaxed)].1
     }
+}
+
+/// Counts poses on several threads, until it is done, a signal comes or the memory is used up.
+pub(crate) fn on_threads<T: Send>(
+    signals: &Signals,
+    poses: u64,
+    (jobs, memory, quiet): (Option<u16>, MemoryGuard, bool),
+    work: impl FnOnce(&dyn Progress) -> T + Send,
+) -> Result<T, Failure> {
+    let pool = pool(jobs.map_or(0, usize::from))?;
+    let display = ProgressDisplay::new("poses", poses, quiet);
+    let done = memory.limit(&signals.progress(&display), |progress| {
+        pool.install(|| work(progress))
+    });
+    done.map_err(Failure::new)
 }
 
 pub(crate) fn pool(jobs: usize) -> Result<ThreadPool, Failure> {

@@ -55,7 +55,7 @@ pub(crate) struct ExportCommand {
 
 impl ExportCommand {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
-        let export = Export::new(self.to, self.format, replacing(self.force))?;
+        let export = Export::new(self.to, self.format)?;
         let pitch = self.pitch.pitch(&cx.settings)?;
         let drawing = match cx.shelf.find(&self.what)? {
             Content::Imprint(imprint) => {
@@ -73,7 +73,7 @@ impl ExportCommand {
         let Some(path) = &export.path else {
             return cx.write(&content);
         };
-        storage::write(path, &content, export.existing)?;
+        storage::write(path, &content, replacing(self.force))?;
         cx.print(&(written(path) + "\n"))
     }
 }
@@ -120,15 +120,10 @@ pub(crate) struct Export {
     /// Its path; None for standard output.
     pub(crate) path: Option<PathBuf>,
     pub(crate) format: &'static ExportFormat,
-    pub(crate) existing: Existing,
 }
 
 impl Export {
-    fn new(
-        path: PathBuf,
-        format: Option<&'static ExportFormat>,
-        existing: Existing,
-    ) -> Result<Self, Failure> {
+    fn new(path: PathBuf, format: Option<&'static ExportFormat>) -> Result<Self, Failure> {
         let path = Some(path).filter(|path| path.as_os_str() != "-");
         let of_path = || path.as_deref().and_then(ExportFormat::of_path);
         let format = format.or_else(of_path).ok_or_else(|| {
@@ -140,11 +135,7 @@ impl Export {
                 ),
             })
         })?;
-        Ok(Self {
-            path,
-            format,
-            existing,
-        })
+        Ok(Self { path, format })
     }
 
     /// The file of one of several imprints: its name has the number at its end.
@@ -183,17 +174,17 @@ pub(crate) struct KeepFlags {
 impl KeepFlags {
     /// Checks the flags. `json` tells whether the answer is JSON, too.
     pub(crate) fn kept(&self, json: bool) -> Result<Kept, Failure> {
-        let (save, existing) = (self.save.clone(), replacing(self.force));
         let export = self.export.clone();
-        let export = export.map(|path| Export::new(path, self.format, existing));
-        let export = export.transpose()?;
+        let export = export
+            .map(|path| Export::new(path, self.format))
+            .transpose()?;
         if json && export.as_ref().is_some_and(|export| export.path.is_none()) {
             let text = "the argument '--json' cannot be used with '--export -': both write to standard output";
             return Err(Failure::usage(text));
         }
         Ok(Kept {
-            save,
-            existing,
+            save: self.save.clone(),
+            existing: replacing(self.force),
             export,
         })
     }

@@ -59,12 +59,8 @@ pub(crate) struct Frames {
     #[arg(long, value_name = "N", value_parser = whole::<u64>(0..), help_heading = "Frames")]
     frame: Option<u64>,
     /// The frame with the label L in the recording
-    #[arg(
-        long,
-        value_name = "L",
-        allow_hyphen_values = true,
-        help_heading = "Frames"
-    )]
+    #[arg(long, value_name = "L", help_heading = "Frames")]
+    #[arg(allow_hyphen_values = true)]
     label: Option<Label>,
     /// The frame with the greatest sum, after tare and gain
     #[arg(long, help_heading = "Frames")]
@@ -672,7 +668,16 @@ impl Answering<'_> {
             .iter()
             .flat_map(|own| own.start..own.end.min(frames));
         let mut exports = numbers.map(|number| export.numbered(number));
-        exports.try_for_each(|export| check(&export, recording))
+        exports.try_for_each(|export| self.check(&export, recording))
+    }
+
+    /// Refuses a file that would replace the recording, or that cannot be written.
+    fn check(&self, export: &Export, recording: &RecordingFile) -> Result<(), Failure> {
+        if let Some(path) = &export.path {
+            recording.refuse_as_target(path)?;
+            check_writable(path, self.kept.existing)?;
+        }
+        Ok(())
     }
 
     /// Answers frames; returns true if there were any. The recording is not read beyond the last of them.
@@ -822,7 +827,7 @@ impl Answering<'_> {
         pipeline: &mut Pipeline,
     ) -> Result<bool, Failure> {
         if let Some(export) = &self.kept.export {
-            check(export, recording)?;
+            self.check(export, recording)?;
         }
         let mut counter: Option<FlipCounter> = None;
         self.each(recording, index, pipeline, |_, processed| {
@@ -842,7 +847,7 @@ impl Answering<'_> {
             let Some(path) = &export.path else {
                 return self.write(content).map(|()| true);
             };
-            storage::write(path, &content, export.existing)?;
+            storage::write(path, &content, self.kept.existing)?;
             said = Some(written(path));
         }
         if self.asked.json {
@@ -857,15 +862,6 @@ impl Answering<'_> {
         }
         Ok(true)
     }
-}
-
-/// Refuses a file that would replace the recording, or that cannot be written.
-fn check(export: &Export, recording: &RecordingFile) -> Result<(), Failure> {
-    let Some(path) = &export.path else {
-        return Ok(());
-    };
-    recording.refuse_as_target(path)?;
-    Ok(check_writable(path, export.existing)?)
 }
 
 /// The threshold in words, with its origin: `active: 20 kPa or more, in pieces of 3 taxels or more (from a flag)`.

@@ -33,9 +33,8 @@ use crate::cli::commands::export::{replacing, written};
 use crate::cli::commands::picture::moved;
 use crate::cli::failure::Failure;
 use crate::cli::output::charset::Charset;
-use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::output::table::{Record, table};
-use crate::cli::signals::{self, Signals};
+use crate::cli::signals::{Signals, on_threads};
 
 const EXAMPLES: &str = "\
 A range is START:END:STEP with the end included, or one number; decimals are
@@ -117,23 +116,20 @@ impl Sweep {
         if let Some(file) = &self.atlas {
             check_writable(file, existing)?;
         }
-        let pool = signals::pool(self.jobs.unwrap_or(0).into())?;
         let memory = MemoryGuard::new(self.memory, TOO_LITTLE_MEMORY);
         let new = |path| PoseFile::new(path, &grid, existing);
         let mut poses = self.poses.as_ref().map(new).transpose()?;
         let shard = self.shard.unwrap_or(Shard::WHOLE);
-        let display = ProgressDisplay::new("poses", shard.poses(&grid), self.quiet);
-        let result = memory.limit(&signals.progress(&display), |progress| {
+        let by = (self.jobs, memory, self.quiet);
+        let result = on_threads(&signals, shard.poses(&grid), by, |progress| {
             let sweep = Sweeping::new(&grid)
                 .with_shard(shard)
                 .with_progress(progress);
-            pool.install(|| match &mut poses {
+            match &mut poses {
                 Some(file) => sweep.run_with_rows(&mut |row, ids| file.take(row, ids)),
                 None => sweep.run(),
-            })
-        });
-        drop(display);
-        let result = result.map_err(Failure::new)?;
+            }
+        })?;
         let poses = poses.map(PoseFile::finish).transpose().map(Option::flatten);
         if !result.complete() {
             poses?;

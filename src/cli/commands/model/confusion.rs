@@ -82,10 +82,8 @@ pub(crate) struct Confusion {
     classifier: Option<String>,
     // A doc comment would want quotation marks around the key.
     #[arg(long, value_name = "KEY=STEP", requires = "descriptors")]
-    #[arg(
-        conflicts_with = "classifier",
-        help = "Round a descriptor to steps, such as cg_cd=0.01"
-    )]
+    #[arg(help = "Round a descriptor to steps, such as cg_cd=0.01")]
+    #[arg(conflicts_with = "classifier")]
     round: Vec<Rounding>,
     /// Neighbours that vote in knn; default 1
     #[arg(long, value_name = "N", requires = "with_classifier", value_parser = whole(1_u32..))]

@@ -29,7 +29,7 @@ use crate::cli::failure::{Failure, Named};
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::output::table::{Record, csv};
-use crate::cli::signals::{self, Signals};
+use crate::cli::signals::{Signals, on_threads};
 
 /// The model that is used if none is named: the seven figures at their default sizes.
 pub(crate) const DEFAULT: &str = "figures";
@@ -249,22 +249,16 @@ fn watched<T>(
     done.ok_or_else(|| signals.failure())
 }
 
-/// Trains on several threads, until it is done, a signal comes or the memory is used up.
 fn trained<T: Send>(
     poses: u64,
-    (jobs, memory, quiet): (Option<u16>, MemoryGuard, bool),
+    by: (Option<u16>, MemoryGuard, bool),
     work: impl FnOnce(&dyn Progress) -> Result<T, TrainingError> + Send,
 ) -> Result<T, Failure> {
     let signals = Signals::catch()?;
-    let pool = signals::pool(jobs.map_or(0, usize::from))?;
-    let display = ProgressDisplay::new("poses", poses, quiet);
-    let done = memory.limit(&signals.progress(&display), |progress| {
-        pool.install(|| work(progress))
-    });
-    drop(display);
+    let done = on_threads(&signals, poses, by, work)?;
     let hint =
         "; use a larger sensor, other positions or smaller shapes, or allow it with --allow-cut";
-    done.map_err(Failure::new)?.map_err(|error| match error {
+    done.map_err(|error| match error {
         TrainingError::Stopped => signals.failure(),
         error @ TrainingError::Cut { .. } => Failure::from(error).with_hint(hint),
         error => error.into(),

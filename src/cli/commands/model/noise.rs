@@ -39,12 +39,8 @@ pub(super) struct NoiseFlags {
     #[arg(long, value_name = "START:END:STEP", value_parser = noise_range, group = "with_noise")]
     pub(super) noise: Option<DecimalRange>,
     /// Also test with N dead taxels, drawn anew for each touch; default 0
-    #[arg(
-        long,
-        value_name = "N,...",
-        value_delimiter = ',',
-        requires = "with_noise"
-    )]
+    #[arg(long, value_name = "N,...", value_delimiter = ',')]
+    #[arg(requires = "with_noise")]
     #[arg(value_parser = whole::<u32>(0..=4095), default_value = "0", hide_default_value = true)]
     dead: Vec<u32>,
     /// Noisy touches of each shape; default 1000
