@@ -121,7 +121,7 @@ impl Context {
 
     /// Writes a line to standard error. If it cannot be written, it is dropped: it is not part of the answer.
     pub(crate) fn note(&self, text: &str) {
-        output::charset::note(text);
+        let _ = writeln!(io::stderr().lock(), "{}", Charset::current().line(text));
     }
 }
 

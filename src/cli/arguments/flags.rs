@@ -17,11 +17,9 @@ use taxel_files::formats::file::has_ending;
 
 /// Parses a name, file or other source, which must not be empty.
 pub(crate) fn name_or_path() -> impl TypedValueParser<Value = OsString> {
-    OsStringValueParser::new().try_map(|name| {
-        let is_empty = name.is_empty();
-        (!is_empty)
-            .then_some(name)
-            .ok_or("expected a name or a path")
+    OsStringValueParser::new().try_map(|name| match name.is_empty() {
+        true => Err("expected a name or a path"),
+        false => Ok(name),
     })
 }
 
@@ -35,34 +33,28 @@ where
 {
     move |text| {
         let number = text.trim().parse::<T>();
-        let is_too_large = number
-            .as_ref()
-            .is_err_and(|error| *error.kind() == IntErrorKind::PosOverflow);
-        number
-            .ok()
-            .filter(|number| range.contains(number))
-            .ok_or_else(|| {
-                let bounds = match (range.start_bound(), range.end_bound()) {
-                    (Bound::Included(least), Bound::Included(most)) => {
-                        format!(" from {least} to {most}")
-                    }
-                    _ if is_too_large => return "the number is too large".to_owned(),
-                    (Bound::Included(least), _) => format!(", {least} or more"),
-                    _ => String::new(),
-                };
-                format!("expected a whole number{bounds}")
-            })
+        let is_too_large =
+            matches!(&number, Err(error) if *error.kind() == IntErrorKind::PosOverflow);
+        let allowed = number.ok().filter(|number| range.contains(number));
+        allowed.ok_or_else(|| {
+            let bounds = match (range.start_bound(), range.end_bound()) {
+                (Bound::Included(least), Bound::Included(most)) => {
+                    format!(" from {least} to {most}")
+                }
+                _ if is_too_large => return "the number is too large".to_owned(),
+                (Bound::Included(least), _) => format!(", {least} or more"),
+                _ => String::new(),
+            };
+            format!("expected a whole number{bounds}")
+        })
     }
 }
 
 pub(crate) const TOO_LITTLE_MEMORY: &str = "take coarser steps, work in shards (--shard 1/8, ..., then taxel merge), or allow more (--memory)";
 
 pub(crate) fn parse_probability(text: &str) -> Result<f64, String> {
-    let number = parse_number(text)?;
-    (0.0..=1.0)
-        .contains(&number)
-        .then_some(number)
-        .ok_or_else(|| "expected a number from 0 to 1".to_owned())
+    let number = Some(parse_number(text)?).filter(|number| (0.0..=1.0).contains(number));
+    number.ok_or_else(|| "expected a number from 0 to 1".to_owned())
 }
 
 pub(crate) fn parse_shard(text: &str) -> Result<Shard, &'static str> {

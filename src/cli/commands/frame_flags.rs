@@ -112,24 +112,21 @@ impl FrameFlags {
 
     /// Whether mask or gain come from standard input.
     pub(crate) fn reads_standard(&self) -> bool {
-        let files = [&self.mask, &self.gain].into_iter().flatten();
-        files.into_iter().any(|path| path.as_os_str() == "-")
+        let mut files = [&self.mask, &self.gain].into_iter().flatten();
+        files.any(|path| path.as_os_str() == "-")
     }
 
     /// How frames are processed; `usual` says what the flags leave open. Reads mask and gain.
     pub(crate) fn pipeline(&self, usual: &Pipeline) -> Result<Pipeline, Failure> {
         let flips = |axis| self.flip.as_ref().is_some_and(|flip| flip.contains(axis));
+        let mask = self.mask.as_deref().map(recording::dead_cells);
         let mut processing = usual.processing.clone();
         processing.view = View {
             crop: self.crop,
             flip_x: flips('x'),
             flip_y: flips('y'),
             quarter_turns: self.turn.unwrap_or_default(),
-            mask: self
-                .mask
-                .as_deref()
-                .map(recording::dead_cells)
-                .transpose()?,
+            mask: mask.transpose()?,
         };
         processing.gain = self.gain.as_deref().map(recording::gain).transpose()?;
         processing.least = self.threshold.least.unwrap_or(processing.least);

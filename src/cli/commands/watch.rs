@@ -15,7 +15,7 @@ use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, sync_channel};
@@ -198,7 +198,8 @@ fn check(source: &FrameSource, request: &WatchRequest) -> Result<(), Failure> {
     else {
         return Ok(());
     };
-    let (names, is_whole) = channels(path, request, Some(wanted))?;
+    let mut recording = RecordingFile::open(path, options.of_recording())?;
+    let (names, is_whole) = recording.channel_names(Some(wanted));
     // A damage is reported when the source is watched.
     if names.contains(wanted) || !is_whole {
         return Ok(());
@@ -207,22 +208,13 @@ fn check(source: &FrameSource, request: &WatchRequest) -> Result<(), Failure> {
     Err(refused(&source.name(), no_channel(wanted, &names)))
 }
 
-fn channels(
-    path: &Path,
-    request: &WatchRequest,
-    up_to: Option<&str>,
-) -> Result<(Vec<String>, bool), Failure> {
-    let mut recording = RecordingFile::open(path, request.options.of_recording())?;
-    Ok(recording.channel_names(up_to))
-}
-
 fn recording(source: &FrameSource, request: &WatchRequest) -> Result<Option<Recording>, Failure> {
     Recording::asked(source, request).map_err(|error| unrecorded(&error))
 }
 
 fn unrecorded(error: &RecorderError) -> Failure {
-    let hint = matches!(error, RecorderError::Exists { .. }).then_some("; --force replaces it");
-    Failure::new(format!("{error}{}", hint.unwrap_or_default()))
+    let exists = matches!(error, RecorderError::Exists { .. });
+    Failure::new(error.to_string()).with_hint(if exists { "; --force replaces it" } else { "" })
 }
 
 /// The shortest time between two reports of dropped frames.
@@ -311,7 +303,10 @@ impl Watcher<'_> {
                 return Ok(());
             }
             let all = match &self.request.source {
-                FrameSource::File(path) => channels(path, self.request, None)?.0,
+                FrameSource::File(path) => {
+                    let options = self.request.options.of_recording();
+                    RecordingFile::open(path, options)?.channel_names(None).0
+                }
                 _ => names.to_vec(),
             };
             let why = "several channels, choose one with --channel";

@@ -6,7 +6,6 @@
 
 use std::borrow::Cow;
 use std::ffi::OsString;
-use std::io::{self, Write};
 use std::iter;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -47,17 +46,15 @@ impl Charset {
         arguments: &[OsString],
         variable: impl Fn(&'static str) -> Option<OsString>,
     ) -> Self {
-        let locale = ["LC_ALL", "LC_CTYPE", "LANG"]
+        let mut set = ["LC_ALL", "LC_CTYPE", "LANG"]
             .into_iter()
-            .filter_map(variable)
-            .find(|value| !value.is_empty())
-            .unwrap_or_default();
+            .filter_map(variable);
+        let locale = set.find(|value| !value.is_empty()).unwrap_or_default();
         let locale = locale.to_string_lossy().to_ascii_lowercase();
         // language_COUNTRY.codeset@modifier, or only the codeset, as on macOS.
-        let codeset = locale
-            .split('@')
-            .next()
-            .and_then(|name| name.split_once('.'))
+        let name = locale.split('@').next().unwrap_or_default();
+        let codeset = name
+            .split_once('.')
             .map_or(&*locale, |(_, codeset)| codeset);
         let ascii = arguments.iter().any(|argument| argument == "--ascii");
         if ascii || !matches!(codeset, "utf-8" | "utf8") {
@@ -93,8 +90,8 @@ impl Charset {
     }
 
     pub(crate) fn lines(self, text: &str) -> String {
-        let lines: Vec<Cow<'_, str>> = text.split('\n').map(|line| self.line(line)).collect();
-        lines.join("\n")
+        let lines = text.split('\n').map(|line| self.line(line));
+        lines.collect::<Vec<_>>().join("\n")
     }
 
     /// Converts the cells of a column and pads them on the right to one width. A wide character, as in `字`, takes two
@@ -116,11 +113,6 @@ impl Charset {
             Self::Unicode => !character.is_control() && !is_invisible(character),
         }
     }
-}
-
-/// Writes a note to standard error. If it cannot be written, it is dropped: it is not part of the answer.
-pub(crate) fn note(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{}", Charset::current().line(text));
 }
 
 #[cfg(test)]

@@ -23,7 +23,6 @@ use crate::cli::commands::sweep::ranges_in_words;
 use crate::cli::failure::Failure;
 use crate::cli::input::shapes;
 use crate::cli::output::charset::Charset;
-use crate::cli::output::charset::note;
 use crate::cli::output::evaluation::{self, NamedBy};
 
 const EXAMPLES: &str = r#"A line of JSON is a shape as for 'taxel batch', but with a name and no pose:
@@ -111,7 +110,7 @@ impl Train {
         let by = (self.jobs, memory, self.quiet);
         let model = trained(training.poses(), by, |progress| {
             if !self.quiet {
-                note(&grid_text(&sensor, anchor, &ranges));
+                cx.note(&grid_text(&sensor, anchor, &ranges));
             }
             training.with_progress(progress).run()
         })?;
