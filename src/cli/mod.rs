@@ -87,13 +87,17 @@ fn perform(arguments: Vec<OsString>) -> Result<(), Failure> {
     if global.ascii {
         settings.charset = Choice::Made(Charset::Ascii);
     }
-    let is_library_named = global.library.is_some();
+    let asked = global.library.is_some();
     settings.library = global.library.or(settings.library);
     if let Some(charset) = settings.charset.made() {
         charset.set();
     }
     let cx = Context {
-        shelf: Shelf::new(settings.library.clone(), is_library_named),
+        shelf: Shelf {
+            folder: settings.library.clone(),
+            asked,
+            ..Shelf::default()
+        },
         settings,
     };
     match program.command {

@@ -47,14 +47,8 @@ impl Figure {
         let sensor = self.sensor.sensor(cx.settings.sensor.sensor)?;
         let figure = Source::Figure(self.values.figure(self.kind, &sensor)?);
         let pitch = self.sensor.pitch(&cx.settings)?.of(Some(&sensor));
-        touch(
-            &figure,
-            sensor,
-            pitch,
-            self.json,
-            &self.keep.kept(self.json)?,
-            cx,
-        )
+        let kept = self.keep.kept(self.json)?;
+        touch(&figure, sensor, pitch, self.json, &kept, cx)
     }
 }
 

@@ -15,7 +15,7 @@ use taxel_files::formats::file::{system_reason, write_reason};
 use taxel_files::storage::ModelCache;
 
 use crate::cli::Context;
-use crate::cli::arguments::parameters::{Given, SensorFlags};
+use crate::cli::arguments::parameters::SensorFlags;
 use crate::cli::failure::Failure;
 use crate::cli::output::charset::Charset;
 use crate::cli::settings::{Choice, Choosable, Settings};
@@ -69,13 +69,7 @@ impl Screen {
     }
 }
 
-/// Shows the frames of a source on the screen.
-pub(crate) fn watch(cx: &Context, look: &Look, watched: WatchRequest) -> Result<(), Failure> {
-    let settings = cx.settings.with(look, &Given::default())?;
-    open(cx, &settings, None, None, Some(watched))
-}
-
-/// Runs the screen until the user quits.
+/// Runs the screen until the user quits; with a source, its live page is open.
 pub(crate) fn open(
     cx: &Context,
     settings: &Settings,
@@ -106,14 +100,12 @@ pub(crate) fn open(
     app.keymap = settings.keymap().clone();
     app.watch_settings = settings.watch_request();
     let first = watched.map(|request| Message::Live(LiveMessage::Watch(Arc::new(request))));
-    let mut record = match record {
-        Some(path) => {
-            // What earlier runs remembered is not in a record.
-            world = world.without_reminders();
-            Some(Record::begin(&path, &options)?)
-        }
-        None => None,
-    };
+    if record.is_some() {
+        // What earlier runs remembered is not in a record.
+        world = world.without_reminders();
+    }
+    let record = record.map(|path| Record::begin(&path, &options));
+    let mut record = record.transpose()?;
     let mut watch = |input: &Input| {
         if let Some(record) = &mut record {
             record.add(input);

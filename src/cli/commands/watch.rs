@@ -38,6 +38,7 @@ use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::cli::Context;
 use crate::cli::arguments::flags::{name_or_path, npy};
+use crate::cli::arguments::parameters::Given;
 use crate::cli::commands::export::replacing;
 use crate::cli::commands::frame_flags::WatchFlags;
 use crate::cli::commands::model;
@@ -123,7 +124,8 @@ impl Watch {
         if let Some(model) = request.model {
             request.model = Some(model::models(&cx.shelf).locate(model)?);
         }
-        screen::watch(cx, &self.look, request)
+        let settings = cx.settings.with(&self.look, &Given::default())?;
+        screen::open(cx, &settings, None, None, Some(request))
     }
 }
 

@@ -121,33 +121,28 @@ impl Answers {
         noun: &str,
         answer: &mut impl FnMut(&[u8], &mut Vec<u8>) -> Result<(), String>,
     ) {
-        let Self {
-            text,
-            answered,
-            bad,
-        } = self;
-        text.clear();
-        (*answered, *bad) = (0, 0);
+        self.text.clear();
+        (self.answered, self.bad) = (0, 0);
         for (number, &line) in (first..).zip(lines) {
             // Some programs start a text with a byte order mark.
             let line = without_mark(line);
             if line.trim_ascii().is_empty() {
                 continue;
             }
-            let begin = text.len();
+            let begin = self.text.len();
             let result = if line.len() > MAX_LINE {
                 Err(format!("longer than 1 MiB, the limit for a {noun}"))
             } else {
-                answer(line, text)
+                answer(line, &mut self.text)
             };
             if let Err(message) = result {
-                *bad += 1;
-                text.truncate(begin);
+                self.bad += 1;
+                self.text.truncate(begin);
                 let error = format!("line {number}: {message}");
-                json::extend_ascii(text, &serde_json::json!({ "error": error }));
+                json::extend_ascii(&mut self.text, &serde_json::json!({ "error": error }));
             }
-            *answered += 1;
-            text.push(b'\n');
+            self.answered += 1;
+            self.text.push(b'\n');
         }
     }
 }

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::ffi::OsStr;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
 
 use taxel_core::figure::FigureKind;
 use taxel_core::imprint::Imprint;
@@ -26,14 +26,15 @@ use crate::cli::failure::{Failure, Named};
 use crate::cli::input::content::Input;
 
 /// The library, which is opened when it is first used: most commands never need it.
-#[derive(Clone, Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Shelf {
     /// The folder of the library; None if the user has no home.
-    folder: Option<PathBuf>,
-    asked: bool,
+    pub(crate) folder: Option<PathBuf>,
+    /// Whether `--library` names it.
+    pub(crate) asked: bool,
     /// The imprints that [`Shelf::imprint`] has found. A batch keeps using a shape as it was when it was first looked
     /// up.
-    found: Arc<Mutex<HashMap<String, Imprint>>>,
+    pub(crate) found: Mutex<HashMap<String, Imprint>>,
 }
 
 /// A folder that cannot exist, because it would be below a device.
@@ -47,16 +48,6 @@ pub(crate) enum Located {
 }
 
 impl Shelf {
-    /// Creates a shelf for the library in `folder`, None if the user has no home. `asked` tells whether `--library`
-    /// names it.
-    pub(crate) fn new(folder: Option<PathBuf>, asked: bool) -> Self {
-        Self {
-            folder,
-            asked,
-            found: Arc::default(),
-        }
-    }
-
     pub(crate) fn library(&self) -> Result<Library, Failure> {
         let folder = self.folder.clone().ok_or(LibraryError::NoPlace);
         folder
@@ -242,7 +233,7 @@ mod tests {
     /// The lock or the temporary file is the first that cannot be written, but does not matter to the user.
     #[test]
     fn a_read_only_library_is_called_so() {
-        let shelf = Shelf::new(None, false);
+        let shelf = Shelf::default();
         let (doing, lock) = ("open the lock", Path::new("ro/.lock"));
         let refused = FileError::cannot(doing, lock)(ErrorKind::ReadOnlyFilesystem.into());
         let said = shelf.refused(refused.into()).text;
@@ -251,7 +242,7 @@ mod tests {
 
     #[test]
     fn shipped_shapes_need_no_folder() {
-        let shelf = Shelf::new(None, false);
+        let shelf = Shelf::default();
         let washer = shelf.locate(OsStr::new("washer"));
         assert!(matches!(washer, Ok(Located::Shape(_))));
         assert!(!shelf.readable().list().expect("shipped shapes").is_empty());
