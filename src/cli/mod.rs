@@ -113,6 +113,7 @@ pub(crate) struct Context {
     pub(crate) shelf: Shelf,
 }
 
+#[expect(clippy::unused_self, reason = "output is at hand with the context")]
 impl Context {
     /// Prints lines of text to standard output.
     pub(crate) fn print(&self, text: &str) -> Result<(), Failure> {

@@ -17,9 +17,9 @@ use taxel_files::formats::file::has_ending;
 
 /// Parses a name, file or other source, which must not be empty.
 pub(crate) fn name_or_path() -> impl TypedValueParser<Value = OsString> {
-    OsStringValueParser::new().try_map(|name| match name.is_empty() {
-        true => Err("expected a name or a path"),
-        false => Ok(name),
+    OsStringValueParser::new().try_map(|name| {
+        let given = Some(name).filter(|name| !name.is_empty());
+        given.ok_or("expected a name or a path")
     })
 }
 

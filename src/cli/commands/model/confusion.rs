@@ -242,7 +242,7 @@ impl Confusion {
                     "values": step.evaluation.keys,
                 })
             });
-            let steps = Value::from_iter(steps);
+            let steps = steps.collect::<Value>();
             return json!({"chosen": steps, "limit": limit.error()}).to_string() + "\n";
         }
         let cells = |name: &str, own: &Evaluation| {
@@ -264,9 +264,12 @@ impl Confusion {
         if self.table.json {
             return json::ascii(&json!({"labels": labels, "errors": errors})) + "\n";
         }
-        let rows = square(&labels, |row, column| match row == column {
-            true => "–".to_owned(),
-            false => percentage(errors[row][column], 2),
+        let rows = square(&labels, |row, column| {
+            if row == column {
+                "–".to_owned()
+            } else {
+                percentage(errors[row][column], 2)
+            }
         });
         table(&rows, &[0]) + "errors in percent, for each pair alone\n"
     }
