@@ -55,11 +55,11 @@ impl Document {
         document
     }
 
-    pub fn to_shape(&self, name: Name, reading: &Reading) -> StoredShape {
+    pub fn to_shape(&self, name: Name) -> StoredShape {
         StoredShape {
             name,
             sensor: self.sensor,
-            imprint: reading.imprint,
+            imprint: Reading::of(self).imprint,
             source: self.source.clone(),
         }
     }
@@ -121,14 +121,13 @@ impl Reading {
     }
 
     pub fn region(&self, chosen: Option<usize>) -> Option<(usize, &Region<'_>)> {
-        let index = chosen
-            .filter(|&index| index < self.regions.len())
-            .or(self.main)?;
-        Some((index, self.regions.get(index)?))
+        let chosen = chosen.filter(|&index| index < self.regions.len());
+        let index = chosen.or(self.main)?;
+        Some((index, &self.regions[index]))
     }
 
     pub fn description(&self, chosen: Option<usize>) -> Option<Description> {
-        self.region(chosen)
-            .map(|(_, region)| Description::of(region))
+        let (_, region) = self.region(chosen)?;
+        Some(Description::of(region))
     }
 }

@@ -13,7 +13,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::message::Message;
-use crate::tui::app::state::{App, NarrowPane};
+use crate::tui::app::state::App;
 use crate::tui::app::status;
 use crate::tui::app::view::Panes;
 use crate::tui::explore::ExploreMessage;
@@ -77,9 +77,8 @@ pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
         all.map(|row| (row, option(row))).collect()
     } else {
         let own = of_menu(context, keymap).into_iter();
-        own.filter(|row| useful(app, row))
-            .map(|row| (row, row.hint))
-            .collect()
+        let own = own.filter(|row| useful(app, row));
+        own.map(|row| (row, row.hint)).collect()
     };
     placed(area, 3, Role::Text, &rows)
 }
@@ -88,18 +87,17 @@ pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
     let (context, keymap) = (app.context(), &app.keymap);
     let line = context.outer().filter(|&outer| outer == Context::Line);
     let screen = context.screen().filter(|&screen| screen != context);
-    let taken: Vec<Key> = keymap
-        .of(context)
-        .flat_map(|row| row.keys.iter().map(|(key, _)| *key))
-        .collect();
-    // A key of the page may mean something else on the screen around it.
-    let free = move |row: &&Binding| {
-        (row.keys.first()).is_some_and(|(key, _)| row.context == context || !taken.contains(key))
+    let taken = |key: Key| {
+        let mut own = keymap.of(context).flat_map(|row| &row.keys);
+        own.any(|(own, _)| *own == key)
     };
-    let outer = screen
-        .into_iter()
-        .chain(line)
-        .flat_map(|screen| keymap.of(screen));
+    // A key of the page may mean something else on the screen around it.
+    let free = |row: &&Binding| {
+        let first = row.keys.first();
+        first.is_some_and(|(key, _)| row.context == context || !taken(*key))
+    };
+    let outer = screen.into_iter().chain(line);
+    let outer = outer.flat_map(|screen| keymap.of(screen));
     let all = keymap.of(context).chain(outer).filter(free);
     let all = all.filter(|row| useful(app, row));
     let menu = menu(app, panes.menu);
@@ -107,15 +105,13 @@ pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
         !row.hint.is_empty() && menu.iter().all(|item| !std::ptr::eq(item.binding, *row))
     });
     // Where the descriptors have no room beside the matrix, their key comes first; elsewhere it does nothing.
-    let switches = |row: &&Binding| row.does(&Message::SwitchPane);
-    let (first, others): (Vec<_>, Vec<_>) = rest.partition(switches);
-    let first = first.into_iter().filter(|_| panes.panel.is_none());
+    let switches = |row: &Binding| row.does(&Message::SwitchPane);
+    let rest = rest.filter(|row| panes.panel.is_none() || !switches(row));
     // There, the key leads back to the matrix.
-    let name = |row: &Binding| match app.narrow_pane {
-        NarrowPane::Panel if row.does(&Message::SwitchPane) => "matrix",
-        _ => row.hint,
-    };
-    let rows: Vec<_> = first.chain(others).map(|row| (row, name(row))).collect();
+    let is_back = |row: &Binding| app.shows_panel && switches(row);
+    let named = rest.map(|row| (row, if is_back(row) { "matrix" } else { row.hint }));
+    let mut rows: Vec<_> = named.collect();
+    rows.sort_by_key(|(row, _)| !switches(row));
     placed(panes.hints, 2, Role::Quiet, &rows)
 }
 
@@ -126,8 +122,7 @@ fn useful(app: &App, row: &Binding) -> bool {
     if matches!(row.context, Context::Matrix | Context::Hold | Context::Draw) {
         return messages.any(|message| is_usable(app, message));
     }
-    let page = app.top_page();
-    let Some((page, panes)) = page.zip(app.panes()) else {
+    let Some((page, panes)) = app.top_page().zip(app.panes()) else {
         return true;
     };
     let area = status::page_area(app, &panes, page);

@@ -10,7 +10,7 @@ use ratatui::layout::{Position, Rect};
 use crate::tui::app::change::{change, settle};
 use crate::tui::app::message::{Message, Mouse, MouseKind};
 use crate::tui::app::page::Place;
-use crate::tui::app::state::{App, NarrowPane};
+use crate::tui::app::state::App;
 use crate::tui::app::{menu, status};
 use crate::tui::widget::write::taxels;
 
@@ -131,9 +131,7 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
     }
     if let Some(page) = app.top_page() {
         // A narrow screen shows the matrix or the panel.
-        let hidden = page.place() == Place::Panel
-            && panes.panel.is_none()
-            && app.narrow_pane == NarrowPane::Matrix;
+        let hidden = page.place() == Place::Panel && panes.panel.is_none() && !app.shows_panel;
         let area = status::page_area(app, &panes, page);
         if inside(area) && !hidden {
             return page.click(area, at).map(Target::Message);
@@ -143,7 +141,7 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
         }
     }
     // On a small screen the descriptors may have the place of the matrix.
-    let narrow = Some(panes.content).filter(|_| app.narrow_pane == NarrowPane::Panel);
+    let narrow = Some(panes.content).filter(|_| app.shows_panel);
     let panel = panes.panel.or(narrow);
     if panel.is_some_and(inside) {
         return Some(Target::Message(Message::Region(1)));

@@ -58,22 +58,10 @@ pub enum MoveKind {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::tui) enum Followed {
-    Cursor,
-    Region,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Display {
     Imprint,
     Shades,
     Percent,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NarrowPane {
-    Matrix,
-    Panel,
 }
 
 pub(crate) const STEPS: [f64; 3] = [0.01, 0.1, 1.0];
@@ -123,10 +111,12 @@ pub struct App {
     /// The taxel that the cursor was put on: column, row. It may lie beyond a sensor that became smaller; so if the
     /// sensor is larger again, the cursor is back.
     pub(in crate::tui) cursor: (u8, u8),
-    pub(in crate::tui) followed: Followed,
+    /// Whether the window follows the described region, not the cursor.
+    pub(crate) follows_region: bool,
     pub(in crate::tui) display: Display,
     pub(in crate::tui) layers: Layers,
-    pub(in crate::tui) narrow_pane: NarrowPane,
+    /// Whether a narrow screen shows the panel, not the matrix.
+    pub(crate) shows_panel: bool,
     /// The step of moving and zooming, one of [`STEPS`].
     pub(crate) step: f64,
     pub(crate) pages: Vec<Box<dyn Page>>,
@@ -167,10 +157,10 @@ impl App {
             reading: Reading::of(&document),
             shown: document.clone(),
             history: History::new(document),
-            followed: Followed::Cursor,
+            follows_region: false,
             display: Display::Imprint,
             layers: Layers::default(),
-            narrow_pane: NarrowPane::Matrix,
+            shows_panel: false,
             step: STEPS[0],
             pages: Vec::new(),
             prompt: None,
@@ -276,7 +266,7 @@ impl App {
 
     pub(in crate::tui) fn seen(&self) -> Bounds {
         let region = self.reading().region(self.chosen());
-        match region.filter(|_| self.followed == Followed::Region) {
+        match region.filter(|_| self.follows_region) {
             Some((_, region)) => region.bounds(),
             None => Bounds::of_taxel(self.cursor().0, self.cursor().1),
         }
@@ -305,11 +295,9 @@ impl App {
             || source != old_source
             || accompanied && !was_accompanied;
         if same_sensor && to != from {
-            self.followed = Followed::Cursor;
-        } else if elsewhere {
-            self.followed = Followed::Region;
-        } else if new != old {
-            self.followed = Followed::Cursor;
+            self.follows_region = false;
+        } else if elsewhere || new != old {
+            self.follows_region = elsewhere;
         }
     }
 

@@ -13,7 +13,6 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use taxel_core::description::Descriptor;
 use taxel_core::parameter::Parameter;
-use taxel_core::sensor::Sensor;
 use taxel_files::formats::value;
 
 use crate::tui::app::change::is_other;
@@ -156,9 +155,12 @@ fn notice(app: &App, panes: &Panes, top: Option<&dyn Page>) -> Option<(String, R
     if let Some(question) = find::<Question>(&app.pages[last..]) {
         return Some((asked(app, question), Role::Error));
     }
-    let notice = app.notice.as_ref().map(|said| match said.is_refusal {
-        false => (said.text.clone(), Role::Key),
-        true => (format!("! {}", said.text), Role::Error),
+    let notice = app.notice.as_ref().map(|said| {
+        if said.is_refusal {
+            (format!("! {}", said.text), Role::Error)
+        } else {
+            (said.text.clone(), Role::Key)
+        }
     });
     let notice = notice.or_else(|| Some((app.jobs.waiting()?, Role::Key)));
     match (notice, top.and_then(Page::alarm)) {
@@ -212,13 +214,19 @@ pub(crate) fn page_area(app: &App, panes: &Panes, page: &dyn Page) -> Rect {
 
 pub fn title(app: &App) -> String {
     let sensor = &app.shown().sensor;
+    let threshold = sensor.threshold();
+    let texts = [threshold.to_string(), format!("{threshold:.2}")];
+    let threshold = texts
+        .into_iter()
+        .max_by_key(String::len)
+        .unwrap_or_default();
     let pitch = sensor.pitch_mm();
     let is_set = pitch != sensor.default_value(Parameter::Pitch);
     // The page of the recording is closed or covered.
     let is_recording = recording(app).is_some();
     let parts = [
         Some(sensor.size().to_string()),
-        Some(format!("threshold {}", threshold(sensor))),
+        Some(format!("threshold {threshold}")),
         is_set.then(|| format!("pitch {pitch} mm")),
         name(app),
         is_recording.then(|| "recording".to_owned()),
@@ -241,14 +249,4 @@ pub(in crate::tui) fn name(app: &App) -> Option<String> {
     }
     let changed = if app.is_changed() { "*" } else { "" };
     Some(format!("{stored}{changed}"))
-}
-
-fn threshold(sensor: &Sensor) -> String {
-    let exact = sensor.threshold().to_string();
-    let short = format!("{:.2}", sensor.threshold());
-    if exact.len() > short.len() {
-        exact
-    } else {
-        short
-    }
 }

@@ -7,7 +7,7 @@ use taxel_files::formats::{Name, StoredShape};
 use taxel_files::storage::{Library, LibraryError, Orphan, UNNAMED, shipped};
 
 use crate::tui::app::change::{inform, refuse, resume};
-use crate::tui::app::document::{Document, Reading};
+use crate::tui::app::document::Document;
 use crate::tui::app::history::DocumentOrigin;
 use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, RunState};
@@ -29,8 +29,7 @@ pub struct UnsavedWork {
 impl UnsavedWork {
     /// Returns the work as a shape. This touches the matrix, so it is not done for every key.
     pub fn to_shape(&self) -> StoredShape {
-        let reading = Reading::of(&self.document);
-        self.document.to_shape(self.name.clone(), &reading)
+        self.document.to_shape(self.name.clone())
     }
 }
 

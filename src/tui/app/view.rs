@@ -27,7 +27,7 @@ use taxel_core::imprint::Imprint;
 
 use crate::tui::app::menu;
 use crate::tui::app::page::{Canvas, Page, Place};
-use crate::tui::app::state::{App, NarrowPane};
+use crate::tui::app::state::App;
 use crate::tui::app::status::{self, title};
 use crate::tui::grid::{CellSize, RULER, beside_rulers};
 use crate::tui::matrix::{self, panel};
@@ -42,30 +42,30 @@ pub fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
         return None;
     };
     menu::draw(theme, buffer, &menu::menu(app, panes.menu));
-    let (page, slot) = (app.pane(), app.pane().map(Page::place));
-    if !matches!(slot, Some(Place::Screen | Place::Body)) {
+    let (page, place) = (app.pane(), app.pane().map(Page::place));
+    if !matches!(place, Some(Place::Screen | Place::Body)) {
         write::text(buffer, panes.title, theme, &title(app), Role::Text);
     }
     // A narrow screen shows one pane at a time.
-    let sees = |pane| panes.panel.is_some() || app.narrow_pane == pane;
-    let sees_matrix = match slot {
-        None | Some(Place::Panel) => sees(NarrowPane::Matrix),
-        slot => slot == Some(Place::Form),
+    let has_both = panes.panel.is_some();
+    let (sees_matrix, sees_panel) = match place {
+        None | Some(Place::Panel) => (has_both || !app.shows_panel, has_both || app.shows_panel),
+        place => (place == Some(Place::Form), true),
     };
     let mut cursor = None;
     if sees_matrix {
         cursor = matrix::view::draw(app, buffer, panes.matrix);
     }
-    match (page, panes.form_panel) {
-        (None, _) if sees(NarrowPane::Panel) => panel::draw(app, buffer, panes.area(Place::Panel)),
-        (Some(page), beside) if slot != Some(Place::Panel) || sees(NarrowPane::Panel) => {
-            if let Some(beside) = beside.filter(|_| slot == Some(Place::Form)) {
+    match page {
+        None if sees_panel => panel::draw(app, buffer, panes.area(Place::Panel)),
+        Some(page) if sees_panel => {
+            if let Some(beside) = panes.form_panel.filter(|_| place == Some(Place::Form)) {
                 panel::draw(app, buffer, beside);
             }
             let area = status::page_area(app, &panes, page);
             write::clear(buffer, area);
             let own = page.draw(Canvas::of(app, buffer), area);
-            cursor = own.or(cursor.filter(|_| slot == Some(Place::Panel)));
+            cursor = own.or(cursor.filter(|_| place == Some(Place::Panel)));
         }
         _ => {}
     }

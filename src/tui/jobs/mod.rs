@@ -11,6 +11,7 @@
 mod disk;
 
 use std::collections::{HashMap, VecDeque};
+use std::error::Error;
 use std::fmt;
 use std::io;
 use std::ops::ControlFlow;
@@ -27,7 +28,7 @@ use taxel_core::progress::{Progress, stop_if};
 use taxel_files::formats::file::system_reason;
 use taxel_files::formats::{Name, StoredShape};
 use taxel_files::storage::{
-    Expected, Journal, Library, LibraryError, ModelCache, ModelChoice, ModelFolder, Models, Orphan,
+    Expected, Journal, Library, ModelCache, ModelChoice, ModelFolder, Models, Orphan,
     RememberedFile,
 };
 use tempfile::TempDir;
@@ -82,7 +83,8 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 #[derive(Clone)]
 pub(crate) struct Post {
     answers: Sender<Posted>,
-    wake: Option<Wake>,
+    /// None in scripts.
+    pub(crate) wake: Option<Wake>,
 }
 
 impl Post {
@@ -140,14 +142,14 @@ pub struct Jobs {
     pending: VecDeque<Pending>,
     answers: VecDeque<(Asker, Answer)>,
     posted: Receiver<Posted>,
-    post: Post,
+    pub(crate) post: Post,
     slots: HashMap<Slot, Running>,
     begun: u64,
     /// The most that a job in place may count, as a script from a stranger must end.
-    limit: Option<u64>,
+    pub pose_limit: Option<u64>,
     kept: Vec<UnsavedWork>,
     /// The folder of a temporary library; dropped last.
-    _scratch: Option<TempDir>,
+    scratch: Option<TempDir>,
 }
 
 impl fmt::Debug for Jobs {
@@ -193,9 +195,9 @@ impl Jobs {
             post,
             slots: HashMap::new(),
             begun: 0,
-            limit: None,
+            pose_limit: None,
             kept: Vec::new(),
-            _scratch: None,
+            scratch: None,
         }
     }
 
@@ -206,33 +208,24 @@ impl Jobs {
 
     pub fn scratch() -> io::Result<Self> {
         let folder = temporary_folder()?;
-        let jobs = Self::new(Library::open(folder.path().join("library")));
-        Ok(jobs.owning(folder))
+        let mut jobs = Self::new(Library::open(folder.path().join("library")));
+        jobs.scratch = Some(folder);
+        Ok(jobs)
     }
 
     /// With shapes in a temporary library, and with unsaved work of crashed programs, the newest last.
     pub fn with_contents(
         shapes: &[StoredShape],
         leftovers: &[StoredShape],
-    ) -> Result<Self, String> {
-        let folder = temporary_folder().map_err(|error| error.to_string())?;
-        let library = Library::open(folder.path().join("library"));
-        let sentence = |error: LibraryError| error.to_string();
+    ) -> Result<Self, Box<dyn Error>> {
+        let mut jobs = Self::scratch()?;
         for shape in shapes {
-            library.save(shape, Expected::Nothing).map_err(sentence)?;
+            jobs.library.save(shape, Expected::Nothing)?;
         }
         // A dropped journal leaves its work behind, as a crash does.
-        (Journal::new(&library).keep(leftovers.to_vec())).map_err(|error| error.to_string())?;
-        Ok(Self::new(library).owning(folder))
-    }
-
-    #[expect(
-        clippy::used_underscore_binding,
-        reason = "it is only kept until it is dropped"
-    )]
-    fn owning(mut self, folder: TempDir) -> Self {
-        self._scratch = Some(folder);
-        self
+        Journal::new(&jobs.library).keep(leftovers.to_vec())?;
+        jobs.orphans = Orphan::all(&jobs.library);
+        Ok(jobs)
     }
 
     /// Does the work on threads; `wake` is called for each answer.
@@ -252,19 +245,13 @@ impl Jobs {
 
     #[must_use]
     pub fn with_pose_limit(mut self, poses: u64) -> Self {
-        self.limit_poses(poses);
+        self.pose_limit = Some(poses);
         self
-    }
-
-    pub fn limit_poses(&mut self, poses: u64) {
-        self.limit = Some(poses);
     }
 
     #[must_use]
     pub fn with_model_cache(mut self, cache: Option<ModelCache>) -> Self {
-        if let Some(cache) = cache {
-            self.models.cache = Some(cache);
-        }
+        self.models.cache = cache;
         self
     }
 
@@ -273,11 +260,6 @@ impl Jobs {
     pub fn without_reminders(mut self) -> Self {
         self.remembers = false;
         self
-    }
-
-    /// What wakes the event loop; None in scripts.
-    pub(crate) fn wake(&self) -> Option<Wake> {
-        self.post.wake.clone()
     }
 
     /// Changes something on the disk; `what` names it, as in "Saving blob". It is never dropped.
@@ -342,7 +324,7 @@ impl Jobs {
             slot,
             number,
             stop: Arc::clone(&stop),
-            limit: self.limit.filter(|_| !has_threads),
+            limit: self.pose_limit.filter(|_| !has_threads),
             done: AtomicU64::new(0),
             begun: Instant::now(),
             reported: Mutex::new(Instant::now()),
@@ -350,20 +332,21 @@ impl Jobs {
             post: self.post.clone(),
         };
         let post = self.post.clone();
-        let mut running = Running {
-            number,
-            stop,
-            thread: None,
-        };
         let body = move || {
             let last = caught(|| job(&progress)).unwrap_or_else(refusal);
             post.send(Posted::Job(slot, number, true, last));
         };
-        if has_threads {
-            running.thread = Some(std::thread::spawn(body));
+        let thread = if has_threads {
+            Some(std::thread::spawn(body))
         } else {
             body();
-        }
+            None
+        };
+        let running = Running {
+            number,
+            stop,
+            thread,
+        };
         self.slots.insert(slot, running);
     }
 
@@ -391,7 +374,7 @@ impl Jobs {
 
     /// Applies an act as if it were the answer of a job: after the present message.
     pub fn later(&mut self, act: impl FnOnce(&mut App) + Send + 'static) {
-        self.post.send(Posted::Other(answer(act)));
+        self.post.answer(act);
     }
 
     /// Waits a moment for the answers to all requests, unless one of them takes long already. `pages` are open.
@@ -441,11 +424,7 @@ impl Jobs {
     fn wait(&mut self, end: Instant) -> bool {
         let time = end.saturating_duration_since(Instant::now());
         let posted = self.posted.recv_timeout(time);
-        let is_there = posted.is_ok();
-        if let Ok(posted) = posted {
-            self.receive(posted);
-        }
-        is_there
+        posted.map(|posted| self.receive(posted)).is_ok()
     }
 
     /// Stops waiting for what the page on top of this many reads. Returns what that was.
@@ -555,9 +534,8 @@ impl Jobs {
         // A threshold that is changed often writes the metadata as often.
         lines.dedup();
         if is_kept != Ok(true) && !jobs.kept.is_empty() {
-            let line =
-                "unsaved work may not be on the disk: the disk refuses it or does not answer\n";
-            lines.push(line.to_owned());
+            let reason = "the disk refuses it or does not answer";
+            lines.push(format!("unsaved work may not be on the disk: {reason}\n"));
         }
         lines
     }
@@ -566,15 +544,14 @@ impl Jobs {
 impl Drop for Jobs {
     fn drop(&mut self) {
         let end = Instant::now() + STOPPING;
-        for running in self.slots.values() {
-            running.stop.store(true, Ordering::Relaxed);
-        }
+        self.slots.keys().for_each(|&slot| self.stop(slot));
         let threads = self.slots.drain().filter_map(|(_, running)| running.thread);
         threads.for_each(|thread| wait_until_finished(&thread, end));
         if let Some((send, thread)) = self.disk.take() {
             drop(send);
             wait_until_finished(&thread, Instant::now() + PATIENCE);
         }
+        drop(self.scratch.take());
     }
 }
 
@@ -600,9 +577,9 @@ impl JobProgress {
 
     /// Tells the screen something while the job goes on.
     pub(crate) fn post(&self, act: impl FnOnce(&mut App) + Send + 'static) {
-        let (slot, number) = (self.slot, self.number);
-        let posted = Posted::Job(slot, number, false, answer(act));
-        self.post.send(posted);
+        let act = answer(act);
+        self.post
+            .send(Posted::Job(self.slot, self.number, false, act));
     }
 
     /// Tells the screen from now on what is counted, at most ten times a second; not in scripts.

@@ -114,7 +114,7 @@ pub(super) fn watch(app: &mut App, number: u64, request: Arc<WatchRequest>, reco
         }
         source
     };
-    let Some(wake) = app.jobs.wake() else {
+    let Some(wake) = app.jobs.post.wake.clone() else {
         begin();
         return;
     };

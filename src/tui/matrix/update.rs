@@ -11,7 +11,7 @@ use taxel_core::quote::shortened;
 use taxel_core::source::Source;
 use taxel_files::formats::file::has_ending;
 use taxel_files::formats::{Content, Drawing, ExportFormat, Name, value};
-use taxel_files::storage::{Existing, ShapeOrigin, UNNAMED};
+use taxel_files::storage::{Existing, UNNAMED};
 
 use crate::tui::app::change::{
     begin, change, compare_with, hold, inform, movable, put_back, refuse, replace, settle, shift,
@@ -20,7 +20,7 @@ use crate::tui::app::change::{
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{DocumentOrigin, History};
 use crate::tui::app::message::{Copied, Endpoint, Layer, Message, Purpose};
-use crate::tui::app::state::{App, Display, Followed, NarrowPane, RunState, STEPS, TerminalEffect};
+use crate::tui::app::state::{App, Display, RunState, STEPS, TerminalEffect};
 use crate::tui::app::unsaved::quit;
 use crate::tui::explain::Explain;
 use crate::tui::explore::ExploreMessage;
@@ -154,12 +154,11 @@ pub(crate) fn save(app: &mut App, quits: bool) {
     if app.reading().imprint.is_empty() {
         return refuse(app, "nothing to save: the matrix is empty");
     }
-    if let Some(save) = &app.saving {
-        let text = format!("{} is still being saved", save.shape.name);
-        return refuse(app, text);
+    if library::is_saving(app) {
+        return;
     }
     let name = match app.stored() {
-        Some(stored) if stored.owner == ShapeOrigin::Own => stored.name.clone(),
+        Some(stored) if stored.is_own() => stored.name.clone(),
         _ => {
             let name = name_of_origin(app);
             let numbered = (2..).map(|number| format!("{name} {number}"));
@@ -249,10 +248,7 @@ fn switch_pane(app: &mut App) {
     if app.panes().is_some_and(|panes| panes.panel.is_some()) {
         return refuse(app, "both sides of the screen are visible");
     }
-    app.narrow_pane = match app.narrow_pane {
-        NarrowPane::Matrix => NarrowPane::Panel,
-        NarrowPane::Panel => NarrowPane::Matrix,
-    };
+    app.shows_panel = !app.shows_panel;
 }
 
 /// Sends a text to the terminal, which may put it into its clipboard, but never reports whether it does. Descriptors
@@ -351,7 +347,7 @@ fn put_cursor(app: &mut App, column: u8, row: u8) {
 /// Until a region is chosen, the main region is described, and `by` counts from it.
 fn choose_region(app: &mut App, by: i8) {
     // Also if the region stays the same: it may be out of sight.
-    app.followed = Followed::Region;
+    app.follows_region = true;
     let seen = app.reading();
     let Some((now, _)) = seen.region(app.chosen()) else {
         return refuse(app, NO_REGION);
@@ -391,7 +387,6 @@ fn write(app: &mut App, name: String) {
 }
 
 fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
-    let reading = app.reading();
     if let Some(format) = ExportFormat::of_path(name) {
         return Ok((format.write)(&drawing(app)));
     }
@@ -405,7 +400,7 @@ fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
     let own = app.stored_name().or(own).unwrap_or(UNNAMED);
     let name = Name::new(own).or_else(|_| Name::new(UNNAMED));
     let name = name.map_err(|error| error.to_string())?;
-    Ok(app.shown().to_shape(name, reading).write().into_bytes())
+    Ok(app.shown().to_shape(name).write().into_bytes())
 }
 
 fn drawing(app: &App) -> Drawing {

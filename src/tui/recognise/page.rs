@@ -14,7 +14,7 @@ use taxel_files::storage::{ModelChoice, RememberedFile};
 use crate::tui::app::change::{begin_drawn, inform, refuse};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Canvas, Flow, Page, Place};
-use crate::tui::app::state::{App, NarrowPane};
+use crate::tui::app::state::App;
 use crate::tui::jobs::{self, answer};
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::Context;
@@ -265,7 +265,7 @@ fn carry_out(app: &mut App, asked: RecogniseMessage, is_open: bool) {
     };
     if !is_open {
         app.open(RecognisePage);
-        app.narrow_pane = NarrowPane::Panel;
+        app.shows_panel = true;
     }
     if choice.is_some() || asked == RecogniseMessage::Open || !is_open {
         prepare(app, choice, !is_open);
@@ -448,6 +448,6 @@ fn forget(app: &mut App) {
 fn close(app: &mut App) {
     app.jobs.forget(jobs::Slot::Poses);
     app.recognition.search.take_if(|(_, found)| found.is_none());
-    app.narrow_pane = NarrowPane::Matrix;
+    app.shows_panel = false;
     app.held = None;
 }

@@ -9,7 +9,7 @@ use taxel_files::formats::{Name, StoredShape};
 use taxel_files::storage::{Expected, Library, LibraryError, LoadedShape, ShapeOrigin};
 
 use crate::tui::app::change::{begin, compare_with, inform, refuse};
-use crate::tui::app::document::{Document, Reading};
+use crate::tui::app::document::Document;
 use crate::tui::app::history::{DocumentOrigin, StoredName};
 use crate::tui::app::message::Purpose;
 use crate::tui::app::question::Question;
@@ -128,12 +128,11 @@ pub(crate) fn restore(app: &mut App, name: Option<String>) {
 /// Saves what is on the matrix. It replaces no file, not even the one that the document came from: if there is one, the
 /// library says what it holds now, and the user is asked.
 pub(crate) fn save(app: &mut App, name: Name, quits: bool) {
-    if let Some(saving) = &app.saving {
-        let text = format!("{} is still being saved", saving.shape.name);
-        return refuse(app, text);
+    if is_saving(app) {
+        return;
     }
     let document = app.history.present().clone();
-    let shape = document.to_shape(name, &Reading::of(&document));
+    let shape = document.to_shape(name);
     let saving = Saving {
         shape: Box::new(shape),
         origin: app.history.origin_index(),
@@ -141,6 +140,16 @@ pub(crate) fn save(app: &mut App, name: Name, quits: bool) {
         quits,
     };
     store(app, saving, Expected::Nothing);
+}
+
+/// Whether a shape is being saved still, which a notice says then.
+pub(crate) fn is_saving(app: &mut App) -> bool {
+    let Some(saving) = &app.saving else {
+        return false;
+    };
+    let text = format!("{} is still being saved", saving.shape.name);
+    refuse(app, text);
+    true
 }
 
 enum Stored {

@@ -15,7 +15,7 @@ use std::collections::{HashMap, HashSet};
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
-use taxel_core::description::{RegionKind, regions};
+use taxel_core::description::{Region, RegionKind, regions};
 use taxel_files::formats::name::{LONGEST, folded};
 use taxel_files::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
 
@@ -24,7 +24,7 @@ use crate::tui::app::message::{Message, Purpose};
 use crate::tui::app::page::{Canvas, Flow, Page, Place, Wheel, find_mut};
 use crate::tui::app::state::App;
 use crate::tui::grid::draw_thumbnail;
-use crate::tui::jobs::answer;
+use crate::tui::jobs::{Jobs, answer};
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::shapes::library::{named, sentence};
@@ -67,30 +67,28 @@ pub(crate) fn open_list(app: &mut App, purpose: Purpose) {
     });
     app.jobs.read("Listing the shapes", |library| {
         let listed = library.list().map_err(|error| sentence(library, &error));
-        answer(|app| {
-            let mut list = app.pages.pop();
-            let own = find_mut::<ListDialog>(list.as_mut_slice());
-            match (listed, own) {
-                (Ok(entries), Some(own)) => {
-                    own.fill(entries);
-                    own.read_visible(app);
+        answer(
+            |app| match (listed, find_mut::<ListDialog>(&mut app.pages)) {
+                (Ok(entries), Some(own)) => own.fill(entries, &mut app.jobs),
+                (Err(reason), _) => {
+                    app.pages.pop();
+                    refuse(app, reason);
                 }
-                (Err(reason), _) => return refuse(app, reason),
                 _ => {}
-            }
-            app.pages.extend(list);
-        })
+            },
+        )
     });
 }
 
 impl ListDialog {
     /// Only the user's own shapes can be deleted.
-    fn fill(&mut self, mut entries: Vec<LibraryEntry>) {
+    fn fill(&mut self, mut entries: Vec<LibraryEntry>, jobs: &mut Jobs) {
         if self.purpose == Purpose::Delete {
             entries.retain(|entry| entry.origin == ShapeOrigin::Own);
         }
         self.entries = Some(entries);
         self.apply_filter();
+        self.read_visible(jobs);
     }
 
     fn entries(&self) -> &[LibraryEntry] {
@@ -111,23 +109,17 @@ impl ListDialog {
         let rank = |(index, entry): (usize, &LibraryEntry)| {
             let name = folded(&entry.name);
             let at = name.find(&wanted)?;
-            let rank = match at {
-                _ if wanted.is_empty() => 0,
-                0 if name == wanted => 1,
-                0 => 2,
-                _ => 3,
-            };
-            Some((rank, index))
+            Some((name != wanted, at > 0, index))
         };
-        let mut ranked: Vec<(u8, usize)> =
-            self.entries().iter().enumerate().filter_map(rank).collect();
+        let entries = self.entries().iter().enumerate();
+        let mut ranked: Vec<_> = entries.filter_map(rank).collect();
         ranked.sort_unstable();
-        self.matching = ranked.into_iter().map(|(_, index)| index).collect();
+        self.matching = ranked.into_iter().map(|(_, _, index)| index).collect();
         self.selected = 0;
     }
 
     /// A library may be large, and only rows in sight need their size and preview.
-    fn read_visible(&mut self, app: &mut App) {
+    fn read_visible(&mut self, jobs: &mut Jobs) {
         let first = self.selected.saturating_sub(AHEAD);
         let near = self.rows().skip(first).take(2 * AHEAD);
         let near = near.map(|(entry, _)| entry.name.clone());
@@ -136,7 +128,7 @@ impl ListDialog {
             return;
         }
         self.asked.extend(unread.iter().cloned());
-        app.jobs.read("Reading the shapes", |library| {
+        jobs.read("Reading the shapes", |library| {
             let read = unread.into_iter().map(|name| {
                 let loaded = library.load(&name);
                 let loaded = loaded.map_err(|error| sentence(library, &error));
@@ -187,7 +179,7 @@ impl Page for ListDialog {
         } else if self.filter.take(message) {
             self.apply_filter();
         }
-        self.read_visible(app);
+        self.read_visible(&mut app.jobs);
         Flow::Stay
     }
 
@@ -320,17 +312,10 @@ fn draw_preview(
         }
     };
     let regions = regions(&shape.imprint);
-    let count = |wanted| {
-        regions
-            .iter()
-            .filter(|region| region.kind() == wanted)
-            .count()
-    };
-    let (pieces, holes) = (count(RegionKind::Exterior), count(RegionKind::Hole));
-    let facts = format!(
-        "NA {}, pieces {pieces}, holes {holes}",
-        shape.imprint.count()
-    );
+    let is_hole = |region: &&Region<'_>| region.kind() == RegionKind::Hole;
+    let holes = regions.iter().filter(is_hole).count();
+    let (na, pieces) = (shape.imprint.count(), regions.len() - holes);
+    let facts = format!("NA {na}, pieces {pieces}, holes {holes}");
     say(&facts, Role::Text);
     let source = shape.source.as_ref();
     let source = source.map_or("an imprint, not a figure".to_owned(), ToString::to_string);

@@ -234,7 +234,7 @@ pub(crate) fn session(bytes: &[u8]) -> bool {
     let number = bytes.next().unwrap_or_default();
     let (columns, rows) = bytes.size(number / 4);
     let mut session = session_of(&format!(":recognise bar<Enter><Esc>{start}"));
-    session.answer(|app| app.jobs.limit_poses(MOST_POSES));
+    session.answer(|app| app.jobs.pose_limit = Some(MOST_POSES));
     session.resize(columns, rows);
     for number in 0..300 {
         let Some(byte) = bytes.next() else {
