@@ -25,10 +25,8 @@ pub(crate) struct Explain {
 
 impl Explain {
     pub(crate) fn new(app: &App) -> Self {
-        let (region, pitch_mm) = (
-            app.reading().description(app.chosen()),
-            app.shown().sensor.pitch_mm(),
-        );
+        let region = app.reading().description(app.chosen());
+        let pitch_mm = app.shown().sensor.pitch_mm();
         let value = |descriptor: &Descriptor| {
             let measured = (descriptor.measure)(region.as_ref()?);
             let text = value::text(measured, descriptor.dimension)?;
@@ -54,12 +52,11 @@ impl Explain {
 
     fn lines(&self, width: u16) -> Vec<String> {
         let key = DESCRIPTORS[self.descriptor].key;
-        let text = GLOSSARY
-            .split(&format!("<a id=\"{key}\"></a>\n"))
-            .nth(1)
-            .unwrap_or("");
-        let end = ["\n<a id=", "\n## Other"].map(|next| text.find(next).unwrap_or(text.len()));
-        let text = &text[..end[0].min(end[1])];
+        let section = GLOSSARY.split_once(&format!("<a id=\"{key}\"></a>\n"));
+        let mut text = section.map_or("", |(_, text)| text);
+        for next in ["\n<a id=", "\n## Other"] {
+            text = text.split(next).next().unwrap_or(text);
+        }
         let (mut lines, mut paragraph, mut is_drawing) = (Vec::new(), String::new(), false);
         // After the heading.
         for line in text.lines().skip(1).chain([""]) {

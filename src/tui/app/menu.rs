@@ -73,7 +73,7 @@ pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
     let (context, keymap) = (app.context(), &app.keymap);
     let options = matches!(context, Context::Matrix | Context::Hold | Context::Draw);
     let rows: Vec<(&Binding, &str)> = if options {
-        let all = keymap.rows().iter().take(MENU).chain(help(keymap));
+        let all = keymap.rows.iter().take(MENU).chain(help(keymap));
         all.map(|row| (row, option(row))).collect()
     } else {
         let own = of_menu(context, keymap).into_iter();
@@ -159,7 +159,7 @@ const LEADING: [Message; 7] = [
 
 fn help(keymap: &Keymap) -> impl Iterator<Item = &Binding> {
     let all = keymap
-        .rows()
+        .rows
         .iter()
         .filter(|row| row.context == Context::Matrix);
     // Found by its place in the table, because its keys may have been taken away.

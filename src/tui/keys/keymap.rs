@@ -191,7 +191,7 @@ pub struct Change {
 
 #[derive(Clone, Debug)]
 pub struct Keymap {
-    rows: Vec<Binding>,
+    pub rows: Vec<Binding>,
 }
 
 impl Default for Keymap {
@@ -242,10 +242,6 @@ impl Keymap {
             row.keys = keys;
         }
         Ok(keymap)
-    }
-
-    pub fn rows(&self) -> &[Binding] {
-        &self.rows
     }
 
     pub fn of(&self, context: Context) -> impl Iterator<Item = &Binding> {

@@ -68,7 +68,10 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) {
         Message::Sensor => app.open(FormDialog::sensor(app.history.present())),
         Message::Save => save(app, false),
         Message::Command => app.open(CommandDialog::over(Context::Matrix, app)),
-        Message::History => open_history(app),
+        Message::History => {
+            let (steps, present) = app.history.steps();
+            app.open(HistoryDialog::new(app.history.start(), steps, present));
+        }
         Message::Explain => app.open(Explain::new(app)),
         Message::Draw => draw_on(app),
         Message::Help => app.open(Help::new(app.context())),
@@ -124,12 +127,6 @@ fn compare_with_before(app: &mut App) {
     }
 }
 
-fn open_history(app: &mut App) {
-    let (steps, present) = app.history.steps();
-    let page = HistoryDialog::new(app.history.start(), steps, present);
-    app.open(page);
-}
-
 /// Opens the form of the picture on the matrix, or of the stored shape on the matrix as a picture; without either, the
 /// list to choose one from. The name in the form is the name of the picture, or else of the document. The notice says
 /// how to get to another shape, because the key for a picture leads here and no longer to the list.
@@ -160,12 +157,13 @@ pub(crate) fn save(app: &mut App, quits: bool) {
     let name = match app.stored() {
         Some(stored) if stored.is_own() => stored.name.clone(),
         _ => {
-            let name = name_of_origin(app);
-            let numbered = (2..).map(|number| format!("{name} {number}"));
-            let mut names = std::iter::once(name.clone()).chain(numbered);
-            names
-                .find(|name| !app.history.knows(name))
-                .unwrap_or_default()
+            let origin = name_of_origin(app);
+            let (mut name, mut number) = (origin.clone(), 1);
+            while app.history.knows(&name) {
+                number += 1;
+                name = format!("{origin} {number}");
+            }
+            name
         }
     };
     app.open(NameDialog::proposing(&name, quits));
@@ -210,16 +208,17 @@ fn next_display(app: &mut App) {
         return refuse(app, format!("no coverage to show: {}", has_none(app)));
     }
     let is_large = app.grid().is_some_and(|grid| grid.size.is_large());
-    let (next, text) = match app.display {
-        Display::Imprint => (Display::Shades, "coverage in shades"),
-        Display::Shades if is_large => (Display::Percent, "coverage in percent"),
-        Display::Shades => (
-            Display::Percent,
-            "coverage in percent; one digit stands for tens: 5 is 50 to 59 %",
-        ),
-        Display::Percent => (Display::Imprint, "active taxels"),
+    let text = match app.display {
+        Display::Imprint => "coverage in shades",
+        Display::Shades if is_large => "coverage in percent",
+        Display::Shades => "coverage in percent; one digit stands for tens: 5 is 50 to 59 %",
+        Display::Percent => "active taxels",
     };
-    app.display = next;
+    app.display = match app.display {
+        Display::Imprint => Display::Shades,
+        Display::Shades => Display::Percent,
+        Display::Percent => Display::Imprint,
+    };
     inform(app, text);
 }
 
@@ -387,31 +386,27 @@ fn write(app: &mut App, name: String) {
 }
 
 fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
+    let document = app.shown();
     if let Some(format) = ExportFormat::of_path(name) {
-        return Ok((format.write)(&drawing(app)));
+        let mut drawing = Drawing::new(&app.reading().imprint);
+        if let Some(source) = &document.source {
+            drawing = drawing.with_outline(source);
+        }
+        drawing.pitch_mm = Some(document.sensor.pitch_mm()).filter(|&pitch| pitch != 1.0);
+        drawing.region = app.chosen().or(drawing.region);
+        return Ok((format.write)(&drawing));
     }
     if !has_ending(name, "json") {
+        let name = shortened(name);
         return Err(format!(
-            "{:?}: expected a name that ends in one of {ENDINGS}",
-            shortened(name)
+            "{name:?}: expected a name that ends in one of {ENDINGS}"
         ));
     }
     let own = Path::new(name).file_stem().and_then(|stem| stem.to_str());
     let own = app.stored_name().or(own).unwrap_or(UNNAMED);
     let name = Name::new(own).or_else(|_| Name::new(UNNAMED));
     let name = name.map_err(|error| error.to_string())?;
-    Ok(app.shown().to_shape(name).write().into_bytes())
-}
-
-fn drawing(app: &App) -> Drawing {
-    let document = app.shown();
-    let mut drawing = Drawing::new(&app.reading().imprint);
-    if let Some(source) = &document.source {
-        drawing = drawing.with_outline(source);
-    }
-    drawing.pitch_mm = Some(document.sensor.pitch_mm()).filter(|&pitch| pitch != 1.0);
-    drawing.region = app.chosen().or(drawing.region);
-    drawing
+    Ok(document.to_shape(name).write().into_bytes())
 }
 
 fn open_file(app: &mut App, name: String) {

@@ -86,8 +86,6 @@ pub struct CommandDialog {
     field: TextField,
     /// What may stand in place of the last word, if it is not decided.
     candidates: Vec<String>,
-    /// The line for which names were asked.
-    asked: Option<String>,
     given: Vec<String>,
     /// Which line is shown: the typed one at 0, an earlier one below, an offered one above.
     at: isize,
@@ -100,30 +98,24 @@ impl CommandDialog {
             page,
             field: TextField::new("", 1000),
             candidates: Vec::new(),
-            asked: None,
             given: app.commands.clone(),
             at: 0,
             typed: String::new(),
         }
     }
 
-    fn typed(&self) -> &str {
-        if self.at == 0 {
-            self.field.text()
-        } else {
-            &self.typed
-        }
+    fn edited(&mut self) {
+        (self.at, self.typed) = (0, self.field.text().to_owned());
     }
 
     /// Goes to an earlier line or back from it, or down the offers.
     fn go(&mut self, by: isize) {
-        let (typed, to) = (self.typed().to_owned(), self.at + by);
-        let begun = typed.trim_start();
+        let (begun, to) = (self.typed.trim_start(), self.at + by);
         let line = match to {
-            0 => Some(typed.clone()),
+            0 => Some(self.typed.clone()),
             ..0 => self.given.iter().rev().nth(to.unsigned_abs() - 1).cloned(),
             // What is offered for a command whose arguments are being typed comes last, and would replace them.
-            _ => offers(&typed, &self.given, self.page)
+            _ => offers(&self.typed, &self.given, self.page)
                 .into_iter()
                 .map(|offer| offer.line)
                 .filter(|line| line.starts_with(begun) || !begun.contains(' '))
@@ -132,30 +124,28 @@ impl CommandDialog {
         if let Some(line) = line {
             self.candidates.clear();
             self.field.set(line);
-            (self.at, self.typed) = (to, typed);
+            self.at = to;
         }
     }
 
     fn complete(&mut self, names: &[String]) {
         let (line, candidates) = complete(self.field.text(), names, self.page);
-        self.at = 0;
         self.field.set(line);
+        self.edited();
         let is_decided = candidates.len() < 2;
         self.candidates = if is_decided { Vec::new() } else { candidates };
     }
 
     /// Completes the last word with names of the disk, unless something else was typed when they arrive.
     fn complete_from_disk(&mut self, app: &mut App, wanted: Names) {
-        self.asked = Some(self.field.text().to_owned());
-        let last_word = begun(self.field.text())
-            .map_or("", |(_, rest)| rest)
-            .to_owned();
+        let asked = self.field.text().to_owned();
+        let last_word = begun(&asked).map_or("", |(_, rest)| rest).to_owned();
         app.jobs.read("Listing the names", move |library| {
             let names = names(library, wanted, &last_word);
-            answer(|app| match names {
+            answer(move |app| match names {
                 Ok(names) => {
                     if let Some(own) = app.top_mut::<Self>()
-                        && own.asked.take().as_deref() == Some(own.field.text())
+                        && own.field.text() == asked
                     {
                         own.complete(&names);
                     }
@@ -240,7 +230,7 @@ impl LinePrompt for CommandDialog {
             message => {
                 self.candidates.clear();
                 if self.field.take(message) {
-                    self.at = 0;
+                    self.edited();
                 }
             }
         }
@@ -277,7 +267,7 @@ impl LinePrompt for CommandDialog {
     }
 
     fn draw_offers(&self, theme: &Theme, buffer: &mut Buffer, body: Rect) {
-        let offers = offers(self.typed(), &self.given, self.page);
+        let offers = offers(&self.typed, &self.given, self.page);
         let picked = usize::try_from(self.at - 1).ok();
         let height = body.height.min(9).min(narrow(offers.len()));
         let y = body.bottom() - height;
