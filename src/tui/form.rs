@@ -80,13 +80,12 @@ pub(crate) struct FormDialog {
 
 impl FormDialog {
     pub(crate) fn figure(before: &Document, memory: &FormMemory) -> Self {
-        let figure = match before.source {
-            Some(Source::Figure(figure)) => figure,
-            _ => {
-                let last = memory.figures.last();
-                let kind = last.map_or(FigureKind::Ellipse, |(figure, _)| figure.kind());
-                memory.new_figure(kind, &before.sensor)
-            }
+        let figure = if let Some(Source::Figure(figure)) = before.source {
+            figure
+        } else {
+            let last = memory.figures.last();
+            let kind = last.map_or(FigureKind::Ellipse, |(figure, _)| figure.kind());
+            memory.new_figure(kind, &before.sensor)
         };
         let begun = Document::touched(before.sensor, Source::Figure(figure));
         Self::new(
@@ -230,36 +229,6 @@ impl FormDialog {
         Some(Document::touched(sensor, source))
     }
 
-    /// The kind that a message chooses, or why it chooses none; None if the kind has no use for it.
-    fn kind_after(&self, now: FigureKind, message: &Message) -> Option<Result<FigureKind, String>> {
-        let all = FigureKind::ALL;
-        let at = all.iter().position(|&own| own == now)?;
-        let names = || FigureKind::names().join(", ");
-        let begins_number = |first: char| "+-.0123456789".contains(first);
-        Some(match message {
-            // A click on the kind, if it already has the focus, chooses the next kind.
-            Message::ToField(None) | Message::Choose(Arrow::Right) => {
-                Ok(all[around(at, 1, all.len())])
-            }
-            Message::Choose(Arrow::Left) => Ok(all[around(at, -1, all.len())]),
-            Message::Type(letter) if !begins_number(*letter) => {
-                let mut following = all.iter().cycle().skip(at + 1).take(all.len());
-                let own = letter.to_ascii_lowercase();
-                let kind = following.find(|kind| kind.name().starts_with(own));
-                let letter = quoted_character(*letter);
-                let none = || format!("no kind begins with {letter}; kinds: {}", names());
-                kind.copied().ok_or_else(none)
-            }
-            Message::Paste(text) if !text.trim().starts_with(begins_number) => {
-                let name = text.trim().to_lowercase();
-                let kind = all.iter().copied().find(|kind| kind.name() == name);
-                kind.ok_or_else(|| format!("no kind named {text:?}; kinds: {}", names()))
-            }
-            message if is_edit(message) => Err("an arrow or a letter chooses the kind".to_owned()),
-            _ => return None,
-        })
-    }
-
     fn rows(&self, area: Rect) -> FieldRows {
         let (below, form) = (write::below(area, 1), &self.form);
         FieldRows::of(below, form.has_choice.into(), form.fields.len(), form.focus)
@@ -300,7 +269,7 @@ impl Page for FormDialog {
                 }
             },
             Message::Defaults => self.set_defaults(),
-            message => match kind.and_then(|kind| self.kind_after(kind, message)) {
+            message => match kind.and_then(|kind| kind_after(kind, message)) {
                 Some(Ok(kind)) => {
                     self.subject = Subject::Figure(kind);
                     self.fill();
@@ -372,6 +341,34 @@ impl Page for FormDialog {
         }
         Some(Message::ToField(Some(self.rows(area).at(at.y)?)))
     }
+}
+
+/// The kind that a message chooses, or why it chooses none; None if the kind has no use for it.
+fn kind_after(now: FigureKind, message: &Message) -> Option<Result<FigureKind, String>> {
+    let all = FigureKind::ALL;
+    let at = all.iter().position(|&own| own == now)?;
+    let names = || FigureKind::names().join(", ");
+    let begins_number = |first: char| "+-.0123456789".contains(first);
+    Some(match message {
+        // A click on the kind, if it already has the focus, chooses the next kind.
+        Message::ToField(None) | Message::Choose(Arrow::Right) => Ok(all[around(at, 1, all.len())]),
+        Message::Choose(Arrow::Left) => Ok(all[around(at, -1, all.len())]),
+        Message::Type(letter) if !begins_number(*letter) => {
+            let mut following = all.iter().cycle().skip(at + 1).take(all.len());
+            let own = letter.to_ascii_lowercase();
+            let kind = following.find(|kind| kind.name().starts_with(own));
+            let letter = quoted_character(*letter);
+            let none = || format!("no kind begins with {letter}; kinds: {}", names());
+            kind.copied().ok_or_else(none)
+        }
+        Message::Paste(text) if !text.trim().starts_with(begins_number) => {
+            let name = text.trim().to_lowercase();
+            let kind = all.iter().copied().find(|kind| kind.name() == name);
+            kind.ok_or_else(|| format!("no kind named {text:?}; kinds: {}", names()))
+        }
+        message if is_edit(message) => Err("an arrow or a letter chooses the kind".to_owned()),
+        _ => return None,
+    })
 }
 
 fn is_edit(message: &Message) -> bool {

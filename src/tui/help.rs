@@ -33,14 +33,6 @@ pub struct Help {
     at: usize,
 }
 
-/// A line on the screen: a title, or keys with what they do, of which only the first line has the keys.
-struct Line {
-    entry: usize,
-    title: &'static str,
-    keys: String,
-    text: &'static str,
-}
-
 impl Help {
     pub fn new(context: Context) -> Self {
         Self {
@@ -52,31 +44,25 @@ impl Help {
         }
     }
 
-    fn lines(&self, keymap: &Keymap, columns: u16) -> Vec<Line> {
+    /// The lines on the screen with their entries, of which only the first line has the keys.
+    fn lines(&self, keymap: &Keymap, columns: u16) -> Vec<(usize, HelpLine)> {
         let room = usize::from(columns).saturating_sub(KEYS);
         let mut lines = Vec::new();
-        for (entry, line) in help(self.context, keymap).into_iter().enumerate() {
-            let HelpLine {
-                title,
-                mut keys,
-                text,
-            } = line;
-            let mut texts = broken(text, room);
-            if texts.is_empty() || write::width(&keys) + 2 >= KEYS {
+        for (entry, mut line) in help(self.context, keymap).into_iter().enumerate() {
+            let mut texts = broken(line.text, room);
+            if texts.is_empty() || write::width(&line.keys) + 2 >= KEYS {
                 texts.insert(0, "");
             }
-            lines.extend(texts.into_iter().map(|text| Line {
-                entry,
-                title,
-                keys: std::mem::take(&mut keys),
-                text,
-            }));
+            for text in texts {
+                let keys = std::mem::take(&mut line.keys);
+                lines.push((entry, HelpLine { keys, text, ..line }));
+            }
         }
         lines
     }
 
     /// The first visible line, so that the screen is full.
-    fn top(&self, lines: &[Line], rows: u16) -> usize {
+    fn top(&self, lines: &[(usize, HelpLine)], rows: u16) -> usize {
         self.top.min(lines.len().saturating_sub(rows.into()))
     }
 
@@ -98,7 +84,7 @@ impl Help {
         wanted.clone_into(&mut self.wanted);
         let lines = self.lines(keymap, room.0);
         let top = lines.get(self.top(&lines, room.1));
-        let from = top.map_or(0, |line| line.entry);
+        let from = top.map_or(0, |(entry, _)| *entry);
         let ahead = self.matches.iter().position(|&entry| entry >= from);
         self.at = ahead.unwrap_or(0);
         self.show_match(keymap, room);
@@ -118,8 +104,8 @@ impl Help {
         let Some(entry) = self.found() else { return };
         let lines = self.lines(keymap, columns);
         let (top, height) = (self.top(&lines, rows), usize::from(rows));
-        let first = lines.partition_point(|line| line.entry < entry);
-        let end = lines.partition_point(|line| line.entry <= entry);
+        let first = lines.partition_point(|(own, _)| *own < entry);
+        let end = lines.partition_point(|(own, _)| *own <= entry);
         if first < top || end > top + height {
             self.top = first.saturating_sub(height / 3);
         }
@@ -173,9 +159,9 @@ impl Page for Help {
         let (top, found) = (self.top(&lines, area.height), self.found());
         let wanted = found.map_or("", |_| self.wanted.as_str());
         let mut cursor = None;
-        for (index, line) in lines.iter().skip(top).enumerate() {
+        for (index, (entry, line)) in lines.iter().skip(top).enumerate() {
             let row = write::row(area, index);
-            let here = found == Some(line.entry) && row.height > 0;
+            let here = found == Some(*entry) && row.height > 0;
             let is_first = here && cursor.is_none();
             cursor = cursor.or(here.then_some(row.as_position()));
             let mut pieces = marked(line.title, wanted, Role::Title);

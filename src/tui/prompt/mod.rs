@@ -104,6 +104,7 @@ impl CommandDialog {
         }
     }
 
+    /// The line that is shown is now the typed one.
     fn edited(&mut self) {
         (self.at, self.typed) = (0, self.field.text().to_owned());
     }
