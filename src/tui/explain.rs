@@ -6,7 +6,7 @@ use taxel_core::description::{DESCRIPTORS, Descriptor};
 use taxel_files::formats::value;
 
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::key::Arrow;
@@ -106,10 +106,6 @@ impl Page for Explain {
 
     fn context(&self) -> Context {
         Context::Explain
-    }
-
-    fn place(&self) -> Place {
-        Place::Body
     }
 
     fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {

@@ -11,7 +11,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Canvas, Flow, LinePrompt, Page, Place, Wheel};
+use crate::tui::app::page::{Canvas, Flow, LinePrompt, Page, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::{Context, HelpLine, Keymap, help};
@@ -147,10 +147,6 @@ impl Page for Help {
 
     fn context(&self) -> Context {
         Context::Help
-    }
-
-    fn place(&self) -> Place {
-        Place::Body
     }
 
     fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {

@@ -15,7 +15,7 @@ use taxel_files::formats::value::counted;
 use crate::tui::app::change::{compare_with, go_to};
 use crate::tui::app::document::Reading;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::keys::keymap::Context;
 use crate::tui::widget::rows::{ListRows, moved};
@@ -74,10 +74,6 @@ impl Page for HistoryDialog {
 
     fn context(&self) -> Context {
         Context::History
-    }
-
-    fn place(&self) -> Place {
-        Place::Body
     }
 
     fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {

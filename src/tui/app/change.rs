@@ -286,9 +286,9 @@ pub(crate) fn write_file(
         answer(move |app| match written {
             Ok(Some(path)) => inform(app, format!("written: {path}")),
             Ok(None) => {
-                let question = format!("{name:?} already exists.");
-                let yes = |app: &mut App| write_file(app, name, Ok(content), Existing::Replaced);
-                app.open(Question::new(question, "Replace it?", yes));
+                app.open(Question::replaces(name, |app, name| {
+                    write_file(app, name, Ok(content), Existing::Replaced);
+                }));
             }
             Err(reason) => refuse(app, reason),
         })

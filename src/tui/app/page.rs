@@ -132,7 +132,9 @@ pub trait Page: Any {
 
     fn context(&self) -> Context;
 
-    fn place(&self) -> Place;
+    fn place(&self) -> Place {
+        Place::Body
+    }
 
     /// Prompts and questions stand in the line of notices, over the page below.
     fn has_pane(&self) -> bool {

@@ -41,8 +41,9 @@ impl Question {
         }
     }
 
-    pub(crate) fn replaces(name: &str, yes: impl FnOnce(&mut App) + 'static) -> Self {
-        Self::new(format!("{name:?} already exists."), "Replace it?", yes)
+    pub(crate) fn replaces(name: String, yes: impl FnOnce(&mut App, String) + 'static) -> Self {
+        let about = format!("{name:?} already exists.");
+        Self::new(about, "Replace it?", |app| yes(app, name))
     }
 
     pub(crate) fn answers(&self, keymap: &Keymap) -> String {

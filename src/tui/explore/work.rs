@@ -20,7 +20,7 @@ use taxel_files::storage::{Existing, PoseFile, atlas_path, is_poses, write_atlas
 
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Place};
+use crate::tui::app::page::{Canvas, Flow, Page};
 use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, RunState};
 use crate::tui::explore::ranges::{RangesForm, about};
@@ -219,9 +219,9 @@ pub(super) fn export(app: &mut App, name: String, existing: Existing) {
             if let Err(reason) = written {
                 return refuse(app, reason);
             }
-            let again = name.clone();
-            let yes = move |app: &mut App| export(app, again, Existing::Replaced);
-            app.open(Question::replaces(&name, yes));
+            app.open(Question::replaces(name, |app, name| {
+                export(app, name, Existing::Replaced);
+            }));
         })
     });
 }
@@ -319,10 +319,6 @@ impl Page for Running {
 
     fn context(&self) -> Context {
         Context::Running
-    }
-
-    fn place(&self) -> Place {
-        Place::Body
     }
 
     fn draw(&self, mut canvas: Canvas<'_>, area: Rect) -> Option<Position> {

@@ -21,7 +21,7 @@ use taxel_files::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::{Message, Purpose};
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Wheel, find_mut};
+use crate::tui::app::page::{Canvas, Flow, Page, Wheel, find_mut};
 use crate::tui::app::state::App;
 use crate::tui::grid::draw_thumbnail;
 use crate::tui::jobs::{Jobs, answer};
@@ -185,10 +185,6 @@ impl Page for ListDialog {
 
     fn context(&self) -> Context {
         Context::List
-    }
-
-    fn place(&self) -> Place {
-        Place::Body
     }
 
     fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
