@@ -113,26 +113,21 @@ impl ExportDialog {
         let (tab, sweep) = (results.tab(), results.sweep());
         // A slash would separate folders.
         let what = name_of(sweep.grid.source()).replace('/', "-");
-        let name = match (tab.drawing, tab.table) {
-            (Some(_), _) => format!("{what}-{}.svg", tab.title),
-            (_, Some(_)) => format!("{what}-{}.csv", tab.title),
-            _ => format!("{what}.csv"),
+        let (name, label) = match (tab.drawing, tab.table) {
+            (Some(_), _) => (format!("{what}-{}.svg", tab.title), "Export to: "),
+            (_, Some(_)) => (format!("{what}-{}.csv", tab.title), "Export to: "),
+            // Says "all", because all imprints are written even if their list is filtered.
+            _ => (format!("{what}.csv"), "Export all imprints to: "),
         };
         let mut field = TextField::new(name, LONGEST_NAME);
         field.enter();
         let mut endings = vec![".csv", ".jsonl", ".npz"];
         endings.extend(sweep.complete().then_some(".npy"));
         endings.extend(tab.drawing.map(|_| ".svg"));
-        let has_page = tab.drawing.is_some() || tab.table.is_some();
         Self {
             field,
             endings,
-            // Says "all", because all imprints are written even if their list is filtered.
-            label: if has_page {
-                "Export to: "
-            } else {
-                "Export all imprints to: "
-            },
+            label,
             has_table: tab.table.is_some(),
         }
     }

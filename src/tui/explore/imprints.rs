@@ -213,15 +213,11 @@ fn draw(results: &Results, mut canvas: Canvas<'_>, area: Rect) -> Option<Positio
         canvas.line(row, [(sign, Role::Key), (&*text, role)]);
     }
     let selected = results.selected()?;
-    let [pieces, holes] = [
-        counted(selected.summary.pieces, "piece"),
-        counted(selected.summary.holes, "hole"),
-    ];
     let (id, pose) = (selected.id, results.pose_text(selected.first_pose));
-    let (key, value) = (
-        &results.chosen.feature().key,
-        results.chosen.text(theme, id, VALUE - 1),
-    );
+    let pieces = counted(selected.summary.pieces, "piece");
+    let holes = counted(selected.summary.holes, "hole");
+    let key = &results.chosen.feature().key;
+    let value = results.chosen.text(theme, id, VALUE - 1);
     let text = format!("imprint {id} at {pose}; {pieces}, {holes}, {key} {value}");
     canvas.text(panes.detail, &text, Role::Text);
     if let Some(area) = panes.gallery {
@@ -233,14 +229,10 @@ fn draw(results: &Results, mut canvas: Canvas<'_>, area: Rect) -> Option<Positio
 /// Each thumbnail has a caption above it.
 fn draw_gallery(results: &Results, first: &AtlasEntry, canvas: &mut Canvas<'_>, area: Rect) {
     let (width, height) = thumbnail_size(canvas.theme, &first.imprint);
-    let (width, height) = (
-        width.min(area.width),
-        1 + height.min(area.height.max(1) - 1),
-    );
-    let (across, down) = (
-        (area.width + 2) / (width + 2),
-        (area.height / height).max(1),
-    );
+    let width = width.min(area.width);
+    let height = 1 + height.min(area.height.max(1) - 1);
+    let across = (area.width + 2) / (width + 2);
+    let down = (area.height / height).max(1);
     let places = (0..down).flat_map(|line| (0..across).map(move |column| (column, line)));
     let selected = results.list.selected;
     for ((column, line), (index, entry)) in places.zip(results.rows_from(selected)) {

@@ -38,12 +38,6 @@ impl Findings {
     }
 }
 
-impl PartialEq for Findings {
-    fn eq(&self, other: &Self) -> bool {
-        std::ptr::eq(self, other)
-    }
-}
-
 fn name_of(source: &Source) -> &str {
     let stored = match source {
         Source::Figure(_) => None,

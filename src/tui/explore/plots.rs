@@ -134,10 +134,10 @@ fn draw_scatter(results: &Results, mut canvas: Canvas<'_>, area: Rect) -> Option
     let title = format!("{} against {}; {count}", described(y), described(x));
     canvas.text(area, &title, Role::Title);
     if points.is_empty() {
-        let text = match results.list.rows.is_empty() {
-            true => results.no_row(),
-            false => "no imprint has both values".to_owned(),
-        };
+        let mut text = "no imprint has both values".to_owned();
+        if results.list.rows.is_empty() {
+            text = results.no_row();
+        }
         canvas.text(row(area, 1), &text, Role::Quiet);
         return None;
     }

@@ -37,6 +37,8 @@ use crate::tui::widget::rows::moved;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, around, narrow};
 
+type Drawing = fn(&Results) -> Result<String, String>;
+
 /// A tab. Its functions get the area below the summary.
 pub(super) struct Tab {
     pub(super) title: &'static str,
@@ -44,7 +46,7 @@ pub(super) struct Tab {
     /// Whether it shows only what the filter keeps.
     pub(super) filtered: bool,
     pub(super) wheel: Wheel,
-    pub(super) drawing: Option<fn(&Results) -> Result<String, String>>,
+    pub(super) drawing: Option<Drawing>,
     /// None for the list of imprints, whose file has all imprints, and for tabs with a drawing.
     pub(super) table: Option<fn(&Results, Rect) -> String>,
     pub(super) draw: fn(&Results, Canvas<'_>, Rect) -> Option<Position>,

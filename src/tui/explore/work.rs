@@ -16,7 +16,7 @@ use taxel_core::source::Source;
 use taxel_core::sweep::{Sweep, SweepResult, TimingSample};
 use taxel_files::formats::value::{counted, grouped};
 use taxel_files::memory::MemoryGuard;
-use taxel_files::storage::{Existing, PoseFile, atlas_path, is_poses, write_atlas};
+use taxel_files::storage::{Existing, NewFile, PoseFile, atlas_path, is_poses, write_atlas};
 
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::message::Message;
@@ -240,7 +240,7 @@ fn write_file(
             // The imprints of its poses are not kept, so the grid is swept again.
             let sweep = Sweep::new(&result.grid).with_progress(progress);
             sweep.run_with_rows(&mut |row, ids| file.take(row, ids));
-            file.finish()?.map(|whole| whole.persist()).transpose()
+            file.finish()?.map(NewFile::persist).transpose()
         })?
     } else {
         let file = write_atlas(&atlas_path(path)?, result, existing);

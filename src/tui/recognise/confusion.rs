@@ -159,8 +159,7 @@ impl Page for Confusion {
         let (trained, confusion) = (&self.trained, &self.trained.evaluation.confusion);
         let title = format!("Confusion: {}", trained.choice);
         let limit = format!("  limit: error {}", percent(trained.evaluation.error()));
-        let pieces = [(&*title, Role::Title), (&*limit, Role::Text)];
-        canvas.line(area, pieces);
+        canvas.line(area, [(&*title, Role::Title), (&*limit, Role::Text)]);
         let meaning = "rows: the shape that touches; columns: its name; percent of the row";
         canvas.text(write::row(area, 1), meaning, Role::Quiet);
         let head = write::row(area, 2);

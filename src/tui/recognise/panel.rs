@@ -198,14 +198,13 @@ impl Panel<'_> {
 
     /// Lines about the touch take precedence over the list of shapes.
     fn answer(&mut self, page: &Recognition, trained: &TrainedModel) {
-        let mut below: Vec<(String, Role)> = Vec::new();
+        let mut below = Vec::new();
         if let Some(answer) = &page.answer {
             let verdict = verdict(answer, page.touches().len(), trained);
             self.text(&verdict, Role::Title);
-            let found = page.found();
-            below = found.map_or(below, |found| {
-                details(&page.present, found, answer, trained)
-            });
+            if let Some(found) = page.found() {
+                below = details(&page.present, found, answer, trained);
+            }
         } else {
             let touch = self.key(&action::RANDOM_TOUCH);
             let text = format!(
@@ -240,11 +239,7 @@ impl Panel<'_> {
         let names = ranking.iter().map(|&(shape, _)| trained.name(shape));
         let width = names.map(write::width).fold(0, usize::max).min(NAME);
         // If shapes are left out, the last line shows how many.
-        let room = if ranking.len() > room {
-            (room - 1).max(1)
-        } else {
-            room
-        };
+        let room = (room - usize::from(ranking.len() > room)).max(1);
         for &(shape, probability) in ranking.iter().take(room) {
             self.shape(trained.name(shape), width, probability);
         }
@@ -259,18 +254,15 @@ impl Panel<'_> {
         self.line += 1;
         let name = write::fitted(name, width, self.canvas.theme);
         let gap = " ".repeat(width.saturating_sub(write::width(&name)) + 1);
+        let label = format!("{name}{gap}");
         let room = usize::from(row.width).saturating_sub(width + 1 + PERCENT);
         let full = full_columns(probability, room);
         let [filled, _, _] = self.canvas.theme.bar();
         let bar = filled.to_string().repeat(full) + &" ".repeat(room - full);
         let percent = format!("{:>PERCENT$}", percent(probability));
-        let pieces = [
-            (&*name, Role::Text),
-            (&*gap, Role::Text),
-            (&*bar, Role::Chosen),
-            (&*percent, Role::Text),
-        ];
-        self.canvas.line(row, pieces);
+        let [label, percent] = [&label, &percent].map(|text| (&**text, Role::Text));
+        self.canvas
+            .line(row, [label, (&bar, Role::Chosen), percent]);
     }
 }
 
@@ -286,12 +278,11 @@ fn verdict(answer: &Answer, touches: usize, trained: &TrainedModel) -> String {
         (true, ..=1) => "no shape leaves this imprint".to_owned(),
         (true, _) => "no shape leaves all of these".to_owned(),
     };
-    let rim = if answer.at_rim {
-        " (at the rim, perhaps cut off)"
-    } else {
-        ""
-    };
-    format!("{}: {what}{rim}", answer.state.name())
+    let mut text = format!("{}: {what}", answer.state.name());
+    if answer.at_rim {
+        text += " (at the rim, perhaps cut off)";
+    }
+    text
 }
 
 /// Returns the lines about the touch on the matrix.
@@ -315,14 +306,11 @@ fn details(
         Some(_) => {}
     }
     if let Some((shape, pose)) = &found.pose {
-        let centre = format!("centre {} cells", value::pose_centre(pose, 1.0));
+        let mut centre = format!("centre {} cells", value::pose_centre(pose, 1.0));
         // If shapes are tied, the pose is that of the first.
-        let is_named = answer.state != AnswerState::Tied && answer.shape == Some(*shape);
-        let centre = if is_named {
-            centre
-        } else {
-            format!("{} {centre}", trained.name(*shape))
-        };
+        if answer.state == AnswerState::Tied || answer.shape != Some(*shape) {
+            centre = format!("{} {centre}", trained.name(*shape));
+        }
         lines.push((centre, Role::Text));
         lines.extend(angle(pose).map(|line| (line, Role::Text)));
     }
@@ -331,9 +319,8 @@ fn details(
 
 fn legend(present: &Imprint, nearest: &Nearest) -> String {
     let differing = present.differing(&nearest.imprint);
-    let surplus = differing.active();
-    let surplus = surplus.filter(|&(column, row)| present.get(column, row));
-    let surplus = surplus.count();
+    let is_surplus = |&(column, row): &(u8, u8)| present.get(column, row);
+    let surplus = differing.active().filter(is_surplus).count();
     let missing = differing.count() as usize - surplus;
     match (surplus, missing) {
         (_, 0) => format!("+ {surplus} surplus"),
