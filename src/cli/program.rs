@@ -295,8 +295,12 @@ mod tests {
                 else {
                     continue;
                 };
-                needy += 1;
                 let missing = missing.join(" ");
+                // Another flag may take the place of an argument, as --library-all that of shapes.
+                if missing.contains("FILE.jsonl|NAME") {
+                    continue;
+                }
+                needy += 1;
                 for other in command.get_arguments() {
                     let is_missing = other.get_long().is_some_and(|flag| missing.contains(flag));
                     let (name, own, other_id) = (command.get_name(), arg.get_id(), other.get_id());
