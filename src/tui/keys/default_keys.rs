@@ -21,14 +21,14 @@ pub type Row = (
 );
 
 /// A place with its name in a settings file and its title. A key without a row is looked up in the outer place.
-pub type Place = (Context, &'static str, &'static str, Context, &'static [Row]);
+pub type KeyPlace = (Context, &'static str, &'static str, Context, &'static [Row]);
 
 /// The options of the menu: the first rows of the matrix.
 pub const MENU: usize = 7;
 
 /// In the order of [`Context`].
 #[rustfmt::skip]
-pub static PLACES: &[Place] = &[
+pub static PLACES: &[KeyPlace] = &[
     // The first seven rows are the menu, in its order.
     (Context::Matrix, "matrix", "On the matrix", Context::Everywhere, &[
         ("n", &[&NEW], "", "New: empty the matrix, to draw by hand"),

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 use crate::tui::app::message::Message;
 use crate::tui::keys::action::Action;
-use crate::tui::keys::default_keys::{PLACES, Place};
+use crate::tui::keys::default_keys::{KeyPlace, PLACES};
 use crate::tui::keys::key::{Arrow, Key, parse};
 
 /// The places in which keys have a meaning: pages, and parts of them.
@@ -49,7 +49,7 @@ impl Context {
         PLACES.iter().map(|(place, ..)| *place)
     }
 
-    fn row(self) -> &'static Place {
+    fn row(self) -> &'static KeyPlace {
         &PLACES[self as usize]
     }
 
@@ -163,7 +163,7 @@ impl Binding {
 }
 
 pub static DEFAULT_KEYS: LazyLock<Vec<Binding>> = LazyLock::new(|| {
-    let rows = |(context, _, _, _, rows): &'static Place| {
+    let rows = |(context, _, _, _, rows): &'static KeyPlace| {
         rows.iter().map(|&(keys, own, hint, help)| {
             let keys = parse(keys).unwrap_or_default().into_iter().enumerate();
             let action = |at: usize| own.get(at).or(own.last()).copied();

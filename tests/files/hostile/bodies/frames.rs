@@ -43,7 +43,7 @@ pub(crate) fn recording(bytes: &[u8]) -> bool {
                     }
                 }
                 RecordingEvent::Note(note) => is_short(&note.to_string()),
-                _ => {}
+                RecordingEvent::Damage { .. } => {}
             }
             ControlFlow::Continue(())
         });
