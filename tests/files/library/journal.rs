@@ -96,7 +96,7 @@ fn each_of_several_programs_keeps_its_own_work() {
     // An empty matrix is not worth recovering.
     assert_eq!(offered_soon(&scratch), [shape("work", 1), shape("work", 2)]);
     drop(running);
-    assert_eq!(offered(&scratch).len(), 4);
+    assert_eq!(offered_soon(&scratch).len(), 4);
 }
 
 #[test]
