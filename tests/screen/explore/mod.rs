@@ -111,14 +111,11 @@ fn a_stopped_sweep_keeps_its_complete_part() {
             "Esc stop",
         ],
     );
-    program.until("poses a second, about");
+    program.press("s");
+    program.until("stopped");
+    program.press("<Esc>");
     // Meanwhile nothing on the matrix changes, and nothing else can be started.
-    program.then(
-        "n<Space>e<Enter>",
-        &["of 36,000,000,000 poses", "rectangle length 6.00"],
-    );
-    program.then("s", &["stopping"]);
-    program.until("distinct imprints");
+    program.sweeps_a_part("n<Space>e<Enter>s", &["stopping", "rectangle length 6.00"]);
     shows(
         &program.session,
         &["a part: ", " of 36,000,000,000 poses", "stopped after "],
