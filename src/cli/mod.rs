@@ -1,8 +1,8 @@
-//! The command line: `taxel COMMAND`, as defined in `arguments`. Without a command the screen opens.
+//! The command line: `taxel COMMAND`. Without a command the screen opens.
 //!
 //! ```text
-//! arguments -> clap -> Program, below -> Command, a struct each in commands/
-//!   + settings: flag, environment, file, default (settings/) -> Context
+//! arguments -> clap -> Program (program.rs) -> its command, a file each in commands/
+//!   + settings: flag, environment, file, default (settings.rs) -> Context
 //!   -> its run(&Context); shapes and files come from input/ -> text or JSON (output/) -> standard output
 //! Failure (failure.rs) -> message on standard error, exit status
 //! ```

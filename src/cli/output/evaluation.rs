@@ -102,3 +102,15 @@ pub(crate) fn summary(own: &Evaluation, named: NamedBy) -> String {
     let (bits, of) = (own.information_bits, own.prior_bits);
     text + &format!("information  {bits:.4} of {of:.4} bits\n")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::count;
+
+    #[test]
+    fn counts_beyond_64_bits_are_texts() {
+        let most = u128::from(u64::MAX);
+        assert_eq!(count(most), u64::MAX);
+        assert_eq!(count(most + 1), "18446744073709551616");
+    }
+}

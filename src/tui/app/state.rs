@@ -128,7 +128,7 @@ pub struct App {
     pub(in crate::tui) recognition: Recognition,
     pub(crate) watch_settings: WatchRequest,
     pub(in crate::tui) live: Option<Box<Live>>,
-    /// The number of sweeps and exports begun so far, which is also the number of the last one.
+    /// How often a source was watched so far, which is also the number of the last time.
     pub(in crate::tui) works: u64,
     /// The commands given so far, the last one last.
     pub(in crate::tui) commands: Vec<String>,

@@ -43,10 +43,7 @@ fn handle(app: &mut App, message: Message) {
     match message {
         Message::Redraw => app.terminal = Some(TerminalEffect::Redraw),
         Message::Suspend => app.terminal = Some(TerminalEffect::Suspend),
-        Message::Resized(columns, rows) => {
-            app.screen = (columns, rows);
-            app.terminal = Some(TerminalEffect::Redraw);
-        }
+        Message::Resized(columns, rows) => app.screen = (columns, rows),
         Message::Terminate => app.run_state = RunState::Terminated,
         Message::Unknown(key) => unknown(app, key),
         Message::Answered => {}

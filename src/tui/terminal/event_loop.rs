@@ -248,7 +248,6 @@ impl EventLoop<'_> {
         let (columns, rows) = size(self.settings);
         self.screen = Screen::new((columns, rows), self.settings.abilities);
         (self.watch)(&Input::Size(columns, rows));
-        // It asks for a new drawing, which comes anyway.
         let _ = update(&mut self.app, Message::Resized(columns, rows));
     }
 
