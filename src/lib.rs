@@ -17,3 +17,4 @@ compile_error!("taxel needs a Unix-like system; on Windows use WSL");
 pub mod cli;
 pub mod frames;
 pub mod tui;
+mod verdict;

@@ -232,7 +232,7 @@ fn without_noise_dead_taxels_do_not_make_an_impossible_touch_certain() {
     let evidence = Evidence::of(&touches).under(Some(&noise));
     assert_ne!(model.recognise(evidence).state, AnswerState::Unknown);
     assert_eq!(
-        model.nearest_of(evidence).map(|near| near.distance),
+        model.recognise(evidence).nearest.map(|near| near.distance),
         Some(0)
     );
     // Of several touches, the impossible one counts, although a dead taxel is a hole in the other.
@@ -243,7 +243,9 @@ fn without_noise_dead_taxels_do_not_make_an_impossible_touch_certain() {
     hole.set(1, 1, true);
     let noise = Noise::new(0.0).expect("in range").with_dead(hole);
     let touches = [square, torn];
-    let nearest = model.nearest_of(Evidence::of(&touches).under(Some(&noise)));
+    let nearest = model
+        .recognise(Evidence::of(&touches).under(Some(&noise)))
+        .nearest;
     assert_eq!(nearest.map(|near| near.distance), Some(1));
     let distance = model.nearest(&torn).map(|near| near.distance);
     assert_eq!(distance, Some(1), "where it is not known");
@@ -308,7 +310,7 @@ fn probabilities_of_all_imprints_sum_up_to_one() {
             let at = |distance: u32| {
                 flip.powf(distance.into()) * (1.0 - flip).powf(f64::from(9 - distance))
             };
-            for (distance, &touches) in (distances.least..=9).zip(touches) {
+            for (distance, &touches) in (distances.nearest.distance..=9).zip(touches) {
                 sums[shape] += float(touches) / float(total) * at(distance);
             }
         }

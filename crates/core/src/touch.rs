@@ -19,6 +19,7 @@ use crate::geometry::{
     Double, Drawn, Ellipse, Extent, Overlap, Pen, Point, Real, Side, Solid, cell_area, row_areas,
 };
 use crate::imprint::Imprint;
+use crate::index::wide;
 use crate::matrix::Matrix;
 use crate::sensor::Sensor;
 
@@ -164,6 +165,32 @@ impl Plane {
                 *word = *word & !(1 << column) | u64::from(area >= least) << column;
             }
         }
+    }
+
+    /// Compares the last touch with an imprint on a matrix of the same size, without the active taxels of `dead`.
+    /// Returns the number of taxels that differ, and their misfit: the sum of |coverage − threshold| over them, which
+    /// is how far the shape is from leaving the imprint.
+    pub(crate) fn misfit(&self, wanted: &Imprint, dead: Option<&Imprint>) -> (u32, f64) {
+        let Drawn { rows, columns } = &self.drawn;
+        let (mut differs, mut misfit) = (0, 0.0);
+        let words = self.imprint.words().iter().zip(wanted.words());
+        for (row, (own, wanted)) in words.enumerate() {
+            let dead = dead.and_then(|dead| dead.words().get(row));
+            let mut differing = (own ^ wanted) & !dead.copied().unwrap_or_default();
+            differs += differing.count_ones();
+            while differing != 0 {
+                let column = wide(differing.trailing_zeros());
+                differing &= differing - 1;
+                let area = if rows.contains(&row) && columns.contains(&column) {
+                    let (pair, lane) = ((row - rows.start) / 2, (row - rows.start) % 2);
+                    self.areas[pair * columns.len() + column - columns.start][lane]
+                } else {
+                    0.0
+                };
+                misfit += Real::abs(area - self.sensor.threshold());
+            }
+        }
+        (differs, misfit)
     }
 
     /// Returns the share of each taxel's cell that the shape of the last touch covers, 0 to 1.

@@ -169,7 +169,6 @@ impl Namer {
         Recognition {
             namer: self,
             answer: self.model.recognise(evidence),
-            nearest: self.model.nearest_of(evidence),
             pose: None,
             copied: Vec::new(),
         }

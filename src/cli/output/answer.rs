@@ -16,6 +16,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::plot::draw_over;
 use crate::cli::output::table::bar;
 use crate::tui::widget::plot::DotCanvas;
+use crate::verdict::verdict;
 
 const SHOWN: usize = 8;
 
@@ -26,8 +27,6 @@ const BAR: usize = 30;
 pub(crate) struct Recognition<'a> {
     pub(crate) namer: &'a Namer,
     pub(crate) answer: Answer,
-    /// The nearest imprint of the model; None if all are larger than the matrix.
-    pub(crate) nearest: Option<Nearest>,
     /// The place of the shape; None if it is unknown.
     pub(crate) pose: Option<PoseReport>,
     /// The keys of a line that its answer repeats.
@@ -71,7 +70,7 @@ impl Serialize for Recognition<'_> {
             probability,
         });
         map.serialize_entry("ranking", &ranking.collect::<Vec<_>>())?;
-        let nearest = self.nearest.as_ref().map(|nearest| NearestJson {
+        let nearest = self.answer.nearest.as_ref().map(|nearest| NearestJson {
             name: name(nearest.shape),
             distance: nearest.distance,
             imprint: &nearest.imprint,
@@ -97,20 +96,15 @@ impl Recognition<'_> {
     /// ```
     pub(crate) fn text(&self, touch: &Imprint) -> String {
         let answer = &self.answer;
-        let mut text = self.verdict(touch) + "\n";
+        let mut text = verdict(answer, &self.namer.model) + "\n";
         // If no imprint of the model fits on the matrix, nothing was compared.
-        if let (Some(noise), Some(nearest)) = (self.namer.noise, &self.nearest) {
+        if let (Some(noise), Some(_)) = (self.namer.noise, &answer.nearest) {
             let compared = match answer.method {
                 SearchMethod::Exact => "only the imprint itself is looked up",
                 SearchMethod::OneFlip => "compared with imprints that differ by at most one taxel",
                 SearchMethod::Scan => "compared with every imprint of the model in every place",
             };
             text += &format!("noise {}: {compared}\n", short(noise.flip()));
-            if let Some(warning) = noise.unexplained(touch, nearest.distance)
-                && !answer.ranking.is_empty()
-            {
-                text += &format!("{warning}\n");
-            }
         }
         if answer.at_rim {
             text += "the imprint reaches the rim of the matrix: it may be cut off\n";
@@ -125,7 +119,7 @@ impl Recognition<'_> {
         if answer.ranking.len() > top {
             text += &format!("  and {} more\n", answer.ranking.len() - top);
         }
-        if let Some(nearest) = self.nearest.as_ref().filter(|own| own.distance > 0) {
+        if let Some(nearest) = self.answer.nearest.as_ref().filter(|own| own.distance > 0) {
             text += &self.differences(touch, nearest);
         }
         let pose = match &self.pose {
@@ -140,27 +134,6 @@ impl Recognition<'_> {
 
     pub(crate) fn name(&self, shape: usize) -> &str {
         &self.namer.model.shapes()[shape].name
-    }
-
-    /// Returns the first line: the shape and how certain it is, or why there is none.
-    fn verdict(&self, touch: &Imprint) -> String {
-        match (self.answer.state, self.answer.shape) {
-            (AnswerState::Tied, _) => {
-                let tied = self.answer.tied.iter().map(|&shape| self.name(shape));
-                tied.collect::<Vec<_>>().join(" or ") + ": tied"
-            }
-            (AnswerState::Rejected, _) => {
-                "rejected: no shape reaches the probability of --reject".to_owned()
-            }
-            (state, Some(shape)) => format!("{}: {}", self.name(shape), state.name()),
-            (_, None) if self.nearest.is_some() => {
-                "unknown: no shape of the model leaves this imprint".to_owned()
-            }
-            (_, None) => {
-                let size = touch.size();
-                format!("unknown: no imprint of the model fits on {size} taxels")
-            }
-        }
     }
 
     /// Draws the touch and the nearest imprint in one matrix.

@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use taxel_core::imprint::Imprint;
-use taxel_core::recognition::{AnswerState, Evidence, Model, Noise};
-use taxel_files::formats::value::fitting;
+use taxel_core::recognition::{Evidence, Model, Noise};
 use taxel_files::storage::ModelChoice;
 
 use crate::frames::WatchRequest;
@@ -15,6 +14,7 @@ use crate::tui::live::update;
 use crate::tui::live::view::Lines;
 use crate::tui::models;
 use crate::tui::widget::theme::Theme;
+use crate::verdict::verdict;
 
 /// The model that names imprints, and its last answer.
 #[derive(Clone, Debug)]
@@ -43,26 +43,10 @@ impl NamedImprint {
         let evidence = Evidence::of(&touches).under(noise);
         let answer = model.recognise(evidence);
         let name = |shape: usize| model.shapes()[shape].name.as_str();
-        let nearest = model.nearest_of(evidence);
-        let differs = nearest.as_ref().map_or(0, |nearest| nearest.distance);
-        let unexplained = noise.and_then(|noise| noise.unexplained(imprint, differs));
-        let likeliest = answer.shape.map_or("", name);
-        let shape = match (answer.state, answer.ranking.first()) {
-            (AnswerState::Unknown, _) => "unknown".to_owned(),
-            (AnswerState::Tied, _) => {
-                let tied: Vec<&str> = answer.tied.iter().map(|&shape| name(shape)).collect();
-                format!("{}: tied", tied.join(" or "))
-            }
-            (state, None) => format!("{likeliest}, {}", state.name()),
-            (state, Some((_, probability))) => {
-                let sure = unexplained.map_or(state.name(), |_| "perhaps none");
-                format!("{likeliest} {} %, {sure}", fitting(100.0 * probability, 4))
-            }
-        };
         Self {
             imprint: *imprint,
-            shape,
-            nearest: nearest.map(|nearest| match nearest.distance {
+            shape: verdict(&answer, model),
+            nearest: answer.nearest.map(|nearest| match nearest.distance {
                 0 => format!("{}, the same", name(nearest.shape)),
                 1 => format!("{}, 1 taxel differs", name(nearest.shape)),
                 taxels => format!("{}, {taxels} taxels differ", name(nearest.shape)),

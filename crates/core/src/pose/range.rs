@@ -113,6 +113,13 @@ impl DecimalRange {
         Some(Self::from_units(start, self.step, self.places, count))
     }
 
+    /// Returns every `stride`-th value, from the first on; None if the stride is 0 or too large for a step.
+    pub(crate) fn every(&self, stride: u64) -> Option<Self> {
+        let step = self.step.checked_mul(i64::try_from(stride).ok()?)?;
+        (stride > 0)
+            .then(|| Self::from_units(self.start, step, self.places, self.count.div_ceil(stride)))
+    }
+
     /// Iterates over all values in order.
     pub fn values(&self) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator {
         (0..narrow(self.count)).map(|index| self.value(index.into()))

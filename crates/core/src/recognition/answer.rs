@@ -1,6 +1,7 @@
-use crate::description::{RegionKind, regions};
+use crate::description::{Description, RegionKind, main_region, regions};
 use crate::imprint::Imprint;
 use crate::parameter::named;
+use crate::recognition::fit::Fit;
 use crate::recognition::likelihood::{NEGLIGIBLE, Noise, SearchMethod};
 use crate::recognition::model::Model;
 use crate::recognition::posterior::{Odds, Posterior};
@@ -9,16 +10,16 @@ use crate::recognition::scan::Nearest;
 /// The state of an answer: how far it can be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AnswerState {
-    /// No other shape of the set leaves these imprints.
+    /// The model holds these imprints, and no other shape of the set leaves them in its poses.
     Certain,
-    /// Other shapes leave these imprints less often, an imprint may be cut off, or taxels may flip, so that any shape
-    /// may leave any imprint.
+    /// The shape fits, but others may, too: they leave these imprints less often, an imprint may be cut off, or taxels
+    /// may flip, so that any shape may leave any imprint.
     Likely,
-    /// Another shape leaves these imprints just as often.
+    /// Another shape is just as likely and fits as well.
     Tied,
-    /// The likeliest shape is less likely than required.
+    /// The shape is less likely than required.
     Rejected,
-    /// No shape of the set leaves these imprints.
+    /// No shape of the set fits.
     Unknown,
 }
 
@@ -34,34 +35,52 @@ named!(
     ]
 );
 
-/// The evidence: imprints of one shape in independent poses, how often taxels fail, and the least probability that is
-/// enough for an answer.
+/// The evidence: imprints of one shape in independent poses, how often taxels fail, and what is enough for an answer.
 #[derive(Clone, Copy, Debug)]
 pub struct Evidence<'a> {
     touches: &'a [Imprint],
     noise: Option<&'a Noise>,
+    /// A shape fits a touch if at most this many taxels differ. With None, 2 and one for every 20 taxels of the outline
+    /// (CE of the main region); under a given noise at least as many as flip in 999 of 1,000 touches.
+    pub tolerance: Option<u32>,
     /// An answer that is less probable than this, from 0 to 1, is rejected. With None, 0 or less, or NaN, no answer is
     /// rejected; with more than 1, every answer is.
     pub reject_below: Option<f64>,
 }
 
+/// The probability of a flip under which shapes are ranked if no noise is given. A touch between the poses of a model
+/// differs in a few taxels from their imprints.
+const RANKING: Noise = Noise::of_flip(0.01);
+
 impl<'a> Evidence<'a> {
-    /// Creates evidence from touches of a sensor whose taxels never fail; any probability is enough for an answer. Each
-    /// imprint lies on the whole matrix of its sensor ([`Model::recognise`]).
+    /// Creates evidence from touches whose taxels do not fail; any probability is enough for an answer. Each imprint
+    /// lies on the whole matrix of its sensor ([`Model::recognise`]).
     pub fn of(touches: &'a [Imprint]) -> Self {
         Self {
             touches,
             noise: None,
+            tolerance: None,
             reject_below: None,
         }
     }
 
-    /// Assumes that taxels fail as the noise says, and a prior uniform over poses and places. None means that taxels
-    /// never fail.
+    /// Assumes that taxels fail as the noise says. Without any flips, only the imprints of the model's own poses count,
+    /// and nothing is fitted. None leaves the evidence as it is.
     #[must_use]
     pub fn under(mut self, noise: impl Into<Option<&'a Noise>>) -> Self {
-        self.noise = noise.into();
+        self.noise = noise.into().or(self.noise);
         self
+    }
+
+    /// Returns how many taxels may differ from a fit of a touch.
+    fn tolerance(&self, touch: &Imprint) -> u32 {
+        self.tolerance.unwrap_or_else(|| {
+            let regions = regions(touch);
+            let main = main_region(&regions).map(|main| Description::of(&regions[main]).ce);
+            let usual = 2 + main.unwrap_or_default() / 20;
+            let flips = self.noise.map(|noise| noise.most_flips(touch.size()));
+            usual.max(flips.unwrap_or_default())
+        })
     }
 }
 
@@ -70,7 +89,8 @@ impl<'a> Evidence<'a> {
 pub struct Answer {
     /// How far the answer can be trusted.
     pub state: AnswerState,
-    /// The number of the shape in the set; if several are tied, the first. None if rejected or unknown.
+    /// The number of the shape in the set: the one that fits best, of equals the likeliest; if several are tied, the
+    /// first. None if rejected or unknown.
     pub shape: Option<usize>,
     /// All shapes that are equally likely, if the state is [`AnswerState::Tied`]; otherwise empty.
     pub tied: Vec<usize>,
@@ -82,11 +102,37 @@ pub struct Answer {
     pub ranking: Vec<(usize, f64)>,
     /// The keys that were compared; for several touches, those of the touch that needed the most.
     pub method: SearchMethod,
+    /// The best fit of a likely shape; for several touches, to the one that differs most. None if nothing was fitted:
+    /// without noise, without a touch, for an empty imprint, and if no imprint of the model fits the matrix.
+    pub fit: Option<Fit>,
+    /// The imprint of the model that is nearest to the first touch that no shape leaves, or to the last touch if shapes
+    /// leave all of them. Dead taxels of the noise are left out. None without a touch, or if no key fits its matrix.
+    pub nearest: Option<Nearest>,
+}
+
+/// The least probability of a shape that is fitted besides the likeliest one.
+const LIKELY: f64 = 0.01;
+
+/// The most shapes that are fitted.
+const MOST_FITTED: usize = 3;
+
+/// The fits of a shape to all touches.
+struct ShapeFit {
+    /// The taxels that differ, in all touches together.
+    differs: u32,
+    /// Whether each touch is fitted within the tolerance.
+    fits: bool,
+    worst: Fit,
 }
 
 impl Model {
-    /// Names the shape that was touched. Without any touch, the answer is the prior. If taxels may flip, no answer is
-    /// certain, since any shape may leave any imprint.
+    /// Names the shape that was touched. The posterior under the noise (1 % if none is given) ranks the shapes; the
+    /// likeliest three of at least 1 % are then fitted in continuous pose ([`Model::fit`]), and the one that differs
+    /// least from the touches is the answer, if it is within the tolerance. So an answer is about poses in general, not
+    /// only about those of the model. Under a noise of 0, only imprints that the model holds are named, by their counts.
+    ///
+    /// Without any touch, the answer is the prior. If a noise is given, no answer is certain, since any shape may leave
+    /// any imprint.
     ///
     /// Touches are imprints on the whole matrix of their sensor, which may be of another size than the model's. One
     /// that is cropped to its taxels reaches the rim, so it may be cut off, and the answer is not certain
@@ -107,21 +153,113 @@ impl Model {
     /// let touch = "......\n.####.\n.####.\n.####.\n.####.\n......".parse()?;
     /// let answer = model.recognise(Evidence::of(&[touch]));
     /// assert_eq!((answer.state, answer.shape), (AnswerState::Certain, Some(0)));
+    /// assert_eq!(answer.fit.expect("a shape was fitted").differs, 0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn recognise(&self, evidence: Evidence<'_>) -> Answer {
-        let dead = evidence.noise.and_then(Noise::dead);
-        let at_rim = (evidence.touches.iter()).any(|touch| may_be_cut_off(touch, dead));
-        let Some(noise) = evidence.noise else {
-            let posterior = self.possible(evidence.touches);
-            return decide(posterior, at_rim, evidence.reject_below);
+        let noise = evidence.noise.unwrap_or(&RANKING);
+        let touches = evidence.touches;
+        let at_rim = (touches.iter()).any(|touch| may_be_cut_off(touch, noise.dead()));
+        let answer = Answer {
+            state: AnswerState::Unknown,
+            shape: None,
+            tied: Vec::new(),
+            at_rim,
+            ranking: Vec::new(),
+            method: SearchMethod::Exact,
+            fit: None,
+            nearest: None,
         };
-        let (posterior, method) = self.posterior_of_touches(noise, evidence.touches);
-        let mut answer = decide(posterior, at_rim, evidence.reject_below);
-        if answer.state == AnswerState::Certain && noise.flip() > 0.0 {
-            answer.state = AnswerState::Likely;
+        if noise.flip() == 0.0 {
+            let (posterior, method) = match noise.dead() {
+                None => (self.possible(touches), SearchMethod::Exact),
+                Some(_) => {
+                    let (posterior, method, _) = self.posterior_of_touches(noise, touches);
+                    (posterior, method)
+                }
+            };
+            let nearest = first_unknown(touches.iter(), |touch| {
+                self.nearest_without(touch, noise.dead())
+            });
+            let likeliest = posterior.ranking.iter().take(posterior.likeliest);
+            let equals = likeliest.map(|&(shape, _)| shape).collect();
+            let is_alone = posterior.possible == 1;
+            let answer = Answer {
+                ranking: posterior.ranking,
+                method,
+                nearest,
+                ..answer
+            };
+            return answer.decided(equals, is_alone, evidence.reject_below);
         }
-        Answer { method, ..answer }
+        let (posterior, method, nearest) = self.posterior_of_touches(noise, touches);
+        let ranks = posterior.ranking.iter().enumerate();
+        let likely = ranks.filter(|&(rank, &(_, own))| rank == 0 || own >= LIKELY);
+        let fits = likely.take(MOST_FITTED).filter_map(|(rank, &(shape, _))| {
+            let fit = self.fit_touches(shape, evidence, noise.dead())?;
+            Some((rank, fit))
+        });
+        let fits: Vec<(usize, ShapeFit)> = fits.collect();
+        let best = fits.iter().min_by_key(|(rank, fit)| (fit.differs, *rank));
+        let equals = match best {
+            None if touches.is_empty() => {
+                let likeliest = posterior.ranking.iter().take(posterior.likeliest);
+                likeliest.map(|&(shape, _)| shape).collect()
+            }
+            Some((rank, best)) if best.fits && *rank < posterior.likeliest => {
+                // Of those that are equally likely, some were perhaps not fitted.
+                let likeliest = posterior.ranking.iter().take(posterior.likeliest);
+                let worse = |shape: usize| {
+                    let mut fits = fits.iter().map(|(_, fit)| fit);
+                    fits.any(|fit| fit.worst.shape == shape && fit.differs > best.differs)
+                };
+                let equals = likeliest.map(|&(shape, _)| shape);
+                equals.filter(|&shape| !worse(shape)).collect()
+            }
+            Some((_, best)) if best.fits => vec![best.worst.shape],
+            _ => Vec::new(),
+        };
+        let is_alone = evidence.noise.is_none() && self.possible(touches).possible == 1;
+        let fit = best.map(|(_, fit)| fit.worst.clone());
+        let answer = Answer {
+            ranking: posterior.ranking,
+            method,
+            fit,
+            nearest,
+            ..answer
+        };
+        answer.decided(equals, is_alone, evidence.reject_below)
+    }
+
+    /// Fits a shape to each of the touches. None if there are no touches, or if the shape cannot be fitted to one.
+    fn fit_touches(
+        &self,
+        shape: usize,
+        evidence: Evidence<'_>,
+        dead: Option<&Imprint>,
+    ) -> Option<ShapeFit> {
+        let mut all: Option<ShapeFit> = None;
+        for touch in evidence.touches {
+            let fit = self.fit(shape, touch, dead)?;
+            let fits = fit.differs <= evidence.tolerance(touch);
+            all = Some(match all {
+                None => ShapeFit {
+                    differs: fit.differs,
+                    fits,
+                    worst: fit,
+                },
+                Some(all) => ShapeFit {
+                    differs: all.differs + fit.differs,
+                    fits: all.fits && fits,
+                    worst: if fit.differs > all.worst.differs {
+                        fit
+                    } else {
+                        all.worst
+                    },
+                },
+            });
+        }
+        all
     }
 
     /// Returns the probabilities of the shapes under a noise, and which keys were compared.
@@ -129,10 +267,10 @@ impl Model {
         &self,
         noise: &Noise,
         touches: &[Imprint],
-    ) -> (Posterior, SearchMethod) {
+    ) -> (Posterior, SearchMethod, Option<Nearest>) {
         let mut further = 0;
         loop {
-            let (odds, method) = self.odds_under(noise, touches, further);
+            let (odds, method, nearest) = self.odds_under(noise, touches, further);
             let most = (odds.iter()).fold(f64::NEG_INFINITY, |most, [_, odds]| most.max(*odds));
             let sum = |which: usize| -> f64 {
                 let own = odds.iter().map(|odds| odds[which]);
@@ -142,7 +280,8 @@ impl Model {
             // The sums are equal if nothing lies further away; `most` is not finite if no shape is possible.
             if all - least <= NEGLIGIBLE * least || !most.is_finite() {
                 let odds: Vec<f64> = odds.into_iter().map(|[odds, _]| odds).collect();
-                return (Posterior::of_logarithms(&odds, touches.len()), method);
+                let posterior = Posterior::of_logarithms(&odds, touches.len());
+                return (posterior, method, nearest);
             }
             further = 2 * further + 4;
         }
@@ -155,14 +294,16 @@ impl Model {
         noise: &Noise,
         touches: &[Imprint],
         further: u32,
-    ) -> (Vec<[f64; 2]>, SearchMethod) {
+    ) -> (Vec<[f64; 2]>, SearchMethod, Option<Nearest>) {
         // The logarithms to add up for each shape: of its weight, and both bounds of each touch.
         let weights = self.log_weights().into_iter();
         let mut parts: Vec<[Vec<f64>; 2]> =
             weights.map(|weight| [vec![weight], vec![weight]]).collect();
         let mut method = SearchMethod::Exact;
+        let mut nearest = Vec::new();
         for touch in touches {
             let Some(distances) = self.distances_further(touch, noise, further) else {
+                nearest.push(None);
                 let bounds = parts.iter_mut().flatten();
                 bounds.for_each(|own| own.push(f64::NEG_INFINITY));
                 continue;
@@ -173,6 +314,7 @@ impl Model {
                 lower.push(likelihood[0]);
                 upper.push(likelihood[1]);
             }
+            nearest.push(Some(distances.nearest));
         }
         // Sorted, so that their sum does not depend on the order of the touches.
         let sum = |mut parts: Vec<f64>| -> f64 {
@@ -182,6 +324,7 @@ impl Model {
         (
             parts.into_iter().map(|bounds| bounds.map(sum)).collect(),
             method,
+            first_unknown(nearest.into_iter(), |nearest| nearest),
         )
     }
 
@@ -200,26 +343,26 @@ impl Model {
         let odds = odds.filter_map(|(shape, odds)| Some((shape, odds?)));
         Posterior::of_odds(odds.collect())
     }
+}
 
-    /// Returns the imprint of the model that is nearest to the first touch that no shape leaves, or to the last touch
-    /// if shapes leave all of them. Dead taxels of the noise are left out. None without a touch, or if no key fits its
-    /// matrix.
-    pub fn nearest_of(&self, evidence: Evidence<'_>) -> Option<Nearest> {
-        let dead = evidence.noise.and_then(Noise::dead);
-        let mut last = None;
-        for touch in evidence.touches {
-            last = self.nearest_without(touch, dead);
-            if last.as_ref().is_none_or(|near| near.distance > 0) {
-                break;
-            }
+/// The nearest imprint of the first touch that no shape leaves, or of the last touch if shapes leave all of them.
+fn first_unknown<T>(
+    touches: impl Iterator<Item = T>,
+    mut nearest: impl FnMut(T) -> Option<Nearest>,
+) -> Option<Nearest> {
+    let mut last = None;
+    for touch in touches {
+        last = nearest(touch);
+        if last.as_ref().is_none_or(|near| near.distance > 0) {
+            break;
         }
-        last
     }
+    last
 }
 
 /// Returns true if the shape may reach beyond the matrix: a living taxel on the rim is active, or dead ones, which may
 /// be covered, lead from an active taxel to the rim.
-fn may_be_cut_off(touch: &Imprint, dead: Option<&Imprint>) -> bool {
+pub(super) fn may_be_cut_off(touch: &Imprint, dead: Option<&Imprint>) -> bool {
     let Some(dead) = dead else {
         return touch.touches_rim();
     };
@@ -232,37 +375,30 @@ fn may_be_cut_off(touch: &Imprint, dead: Option<&Imprint>) -> bool {
     })
 }
 
-fn decide(posterior: Posterior, at_rim: bool, reject_below: Option<f64>) -> Answer {
-    let Posterior {
-        ranking,
-        likeliest,
-        possible,
-    } = posterior;
-    let mut answer = Answer {
-        state: AnswerState::Unknown,
-        shape: None,
-        tied: Vec::new(),
-        at_rim,
-        ranking,
-        method: SearchMethod::Exact,
-    };
-    let Some(&(first, most)) = answer.ranking.first() else {
-        return answer;
-    };
-    answer.shape = Some(first);
-    answer.state = if reject_below.is_some_and(|least| most < least) {
-        answer.shape = None;
-        AnswerState::Rejected
-    } else if likeliest > 1 {
-        let tied = answer.ranking.iter().take(likeliest);
-        answer.tied = tied.map(|&(shape, _)| shape).collect();
-        AnswerState::Tied
-    } else if possible == 1 && !at_rim {
-        AnswerState::Certain
-    } else {
-        AnswerState::Likely
-    };
-    answer
+impl Answer {
+    /// Returns the same answer, decided: `equals` are the shapes that nothing tells apart, none if no shape fits;
+    /// `is_alone` says that only one shape leaves these imprints in the poses of the model.
+    fn decided(mut self, equals: Vec<usize>, is_alone: bool, reject_below: Option<f64>) -> Self {
+        let Some(&first) = equals.first() else {
+            return self;
+        };
+        let probability = self.ranking.iter().find(|&&(shape, _)| shape == first);
+        let probability = probability.map_or(0.0, |&(_, probability)| probability);
+        if reject_below.is_some_and(|least| probability < least) {
+            self.state = AnswerState::Rejected;
+            return self;
+        }
+        self.shape = Some(first);
+        self.state = if equals.len() > 1 {
+            self.tied = equals;
+            AnswerState::Tied
+        } else if is_alone && !self.at_rim {
+            AnswerState::Certain
+        } else {
+            AnswerState::Likely
+        };
+        self
+    }
 }
 
 #[cfg(test)]

@@ -7,13 +7,11 @@
 //!
 //! [`scan`](super::scan) finds the near keys.
 
-use std::fmt;
-
 use crate::imprint::Imprint;
 use crate::index::{narrow, wide};
 use crate::parameter::named;
 use crate::recognition::model::{Model, float};
-use crate::recognition::scan::{Observed, shift_count};
+use crate::recognition::scan::{Nearest, Observed, shift_count};
 use crate::sensor::MatrixSize;
 
 /// The keys that were compared for an answer, the fewest first.
@@ -36,9 +34,9 @@ named!(
 /// The number of touches of each shape at each distance from an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Distances {
-    /// The least distance of any touch.
-    pub least: u32,
-    /// For each shape, the number of touches at each distance from `least` on.
+    /// The nearest touch.
+    pub nearest: Nearest,
+    /// For each shape, the number of touches at each distance from that of the nearest on.
     pub touches: Vec<Vec<u64>>,
     /// The keys that were compared.
     pub method: SearchMethod,
@@ -88,7 +86,7 @@ impl Model {
                 }
             });
             let reached = touches.len() as u64;
-            let beyond = if u64::from(distances.least) + reached > u64::from(all) {
+            let beyond = if u64::from(distances.nearest.distance) + reached > u64::from(all) {
                 f64::NEG_INFINITY
             } else {
                 float(reached) * fall
@@ -165,7 +163,8 @@ impl Model {
             }
         }
         let observed = Observed::new(imprint, noise.dead());
-        let least = self.index().nearest(&observed, |_| ())?.distance;
+        let nearest = self.nearest_without(imprint, noise.dead())?;
+        let least = nearest.distance;
         if noise.flip() == 0.0 && least > 0 {
             return None;
         }
@@ -173,7 +172,7 @@ impl Model {
         let all = narrow(imprint.size().cells());
         let most = all.min(least + reach);
         Some(Distances {
-            least,
+            nearest,
             touches: self.histogram(&observed, least, most),
             method: SearchMethod::Scan,
         })
@@ -182,10 +181,8 @@ impl Model {
     /// Looks up the key of the imprint itself and, if larger distances matter, the keys of all imprints that differ by
     /// one taxel. None if that is not enough.
     fn near(&self, imprint: &Imprint, reach: u32) -> Option<Distances> {
-        if self.counts_of(imprint).is_empty() {
-            // The least distance may be 1, but then distance 2 matters too.
-            return None;
-        }
+        // If no shape leaves the imprint, the least distance may be 1, but then distance 2 matters too.
+        let nearest = self.nearest_known(imprint)?;
         let nowhere = shift_count((0, 0), imprint.size());
         let mut touches = vec![vec![0; wide(reach) + 1]; self.shapes().len()];
         let mut add = |imprint: &Imprint, distance: usize| {
@@ -209,7 +206,7 @@ impl Model {
             }
         }
         Some(Distances {
-            least: 0,
+            nearest,
             touches,
             method,
         })
@@ -289,37 +286,6 @@ impl NoiseError {
     }
 }
 
-/// A difference that a noise does not explain: more taxels of a touch differ from every imprint of a model than are
-/// likely to flip.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UnexplainedDifference {
-    /// The number of taxels that differ from the nearest imprint.
-    pub found: u32,
-    /// The number of taxels that are expected to flip.
-    pub expected: f64,
-}
-
-impl fmt::Display for UnexplainedDifference {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let expected = match libm::round(self.expected) {
-            few if few < 1.0 => "less than 1 is".to_owned(),
-            1.0 => "about 1 is".to_owned(),
-            many => format!("about {many} are"),
-        };
-        let found = self.found;
-        write!(
-            f,
-            "{found} taxels differ, {expected} expected at this noise: perhaps none of these shapes"
-        )
-    }
-}
-
-/// A noise does not explain a difference if a difference at least as large is less probable than this. A posterior
-/// compares the shapes of a set only with each other, so it names one of them even if the touch is far from all. If a
-/// shape of the set left the touch, its own imprint is no nearer than the nearest one, so fewer than one such touch
-/// in a million is reported as unexplained.
-const EXPLAINED: f64 = 1e-6;
-
 impl Noise {
     /// Creates a noise in which every taxel flips with this probability.
     ///
@@ -327,7 +293,7 @@ impl Noise {
     /// Returns an error if the probability is not from 0 to below ½.
     pub fn new(flip: f64) -> Result<Self, NoiseError> {
         if (0.0..0.5).contains(&flip) {
-            Ok(Self { flip, dead: None })
+            Ok(Self::of_flip(flip))
         } else {
             Err(NoiseError { found: flip })
         }
@@ -351,30 +317,26 @@ impl Noise {
         self.dead.as_ref()
     }
 
-    /// Checks whether this noise explains that a touch differs from its nearest imprint in `found` taxels. Returns
-    /// None if it does; otherwise the numbers.
-    pub fn unexplained(&self, touch: &Imprint, found: u32) -> Option<UnexplainedDifference> {
-        let size = touch.size();
-        let dead = self.dead.map_or(0, |dead| dead.resized(size).count());
-        let cells = narrow(size.cells()) - dead;
-        (self.at_least(found, cells) < EXPLAINED).then(|| UnexplainedDifference {
-            found,
-            expected: self.flip * f64::from(cells),
-        })
+    /// Creates a noise without dead taxels; the probability is from 0 to below ½.
+    pub(super) const fn of_flip(flip: f64) -> Self {
+        Self { flip, dead: None }
     }
 
-    fn at_least(&self, least: u32, cells: u32) -> f64 {
+    /// Returns the fewest taxels of a matrix such that no more flip in 999 of 1,000 touches.
+    pub(super) fn most_flips(&self, size: MatrixSize) -> u32 {
+        let dead = self.dead.map_or(0, |dead| dead.resized(size).count());
+        let cells = narrow(size.cells()) - dead;
         // As logarithms: the first terms may be too small for an `f64`.
         let mut term = f64::from(cells) * libm::log1p(-self.flip);
-        let mut sum = 0.0;
-        for flips in 0..=cells {
-            if flips >= least {
-                sum += libm::exp(term);
-            }
+        let mut sum = libm::exp(term);
+        let mut flips = 0;
+        while sum < 0.999 && flips < cells {
             let ways = f64::from(cells - flips) / f64::from(flips + 1);
             term += libm::log(ways) + libm::log(self.ratio());
+            sum += libm::exp(term);
+            flips += 1;
         }
-        sum
+        flips
     }
 
     /// Returns the factor by which each differing taxel makes a touch less probable.
@@ -469,7 +431,10 @@ mod tests {
         let touch = Imprint::empty(MatrixSize::of(16, 16));
         let distances = rectangles().distances(&touch, &noise).expect("they fit");
         for touches in &distances.touches {
-            assert_eq!(distances.least as usize + touches.len(), 16 * 16 + 1);
+            assert_eq!(
+                distances.nearest.distance as usize + touches.len(),
+                16 * 16 + 1
+            );
         }
     }
 
@@ -493,7 +458,7 @@ mod tests {
         let touch: Imprint = "#.".parse().expect("an imprint");
         let bounds = |touches: &[u64]| {
             let distances = Distances {
-                least: 0,
+                nearest: model.nearest(&touch).expect("it fits"),
                 touches: vec![touches.to_vec()],
                 method: SearchMethod::Scan,
             };
@@ -530,25 +495,18 @@ mod tests {
     }
 
     #[test]
-    fn a_noise_explains_differences_down_to_one_in_a_million() {
-        let touch = Imprint::empty(MatrixSize::of(16, 16));
-        let noise = Noise::new(0.01).expect("in range");
-        assert!(noise.at_least(0, 256) > 1.0 - 1e-12);
-        // The Poisson distribution with the same mean gives 2.4e-6 and 4.7e-7 here.
-        assert_eq!(noise.unexplained(&touch, 13), None);
-        let found = noise.unexplained(&touch, 14).expect("not explained");
-        assert_eq!(
-            found.to_string(),
-            "14 taxels differ, about 3 are expected at this noise: perhaps none of these shapes"
-        );
-        // No flips are expected in a dead row.
-        let dead = "################".parse().expect("a row");
-        let found = noise.with_dead(dead).unexplained(&touch, 14);
-        assert_eq!(found.map(|own| own.expected), Some(2.4));
+    fn few_touches_flip_more_taxels_than_the_quantile_says() {
+        let size = MatrixSize::of(16, 16);
+        let noise = |flip| Noise::new(flip).expect("in range");
+        // By sums of exact fractions.
+        for (flip, expected) in [(0.001, 3), (0.01, 9), (0.02, 13), (0.1, 41), (0.49, 150)] {
+            assert_eq!(noise(flip).most_flips(size), expected, "{flip}");
+        }
         // The largest matrix, where the probability of no flip is too small for an `f64`.
-        let most = Noise::new(0.49).expect("in range");
-        let largest = Imprint::empty(MatrixSize::of(64, 64));
-        assert_eq!(most.unexplained(&largest, 2100), None);
-        assert!(most.unexplained(&largest, 2300).is_some());
+        assert_eq!(noise(0.49).most_flips(MatrixSize::of(64, 64)), 2106);
+        // No flips are expected in dead taxels.
+        let all = "#".repeat(16);
+        let dead = [all.as_str(); 16].join("\n").parse().expect("rows");
+        assert_eq!(noise(0.1).with_dead(dead).most_flips(size), 0);
     }
 }

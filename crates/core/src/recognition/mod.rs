@@ -24,6 +24,7 @@
 mod answer;
 mod classifiers;
 mod evaluation;
+mod fit;
 mod given;
 mod likelihood;
 mod model;
@@ -38,8 +39,9 @@ pub use crate::atlas::{ImprintKey, KeyTable};
 pub use answer::{Answer, AnswerState, Evidence};
 pub use classifiers::{Classifier, ClassifierEvaluation, ClassifierSettings, PoseSample};
 pub use evaluation::{Certainty, ConfusionMatrix, Evaluation, PairConfusion};
+pub use fit::Fit;
 pub use given::{ChosenDescriptor, GivenDescriptors, GivenError, Rounding, ShapeDescriptor};
-pub use likelihood::{Distances, Noise, NoiseError, SearchMethod, UnexplainedDifference};
+pub use likelihood::{Distances, Noise, NoiseError, SearchMethod};
 pub use model::{Model, ModelError, ModelHead, ModelMerge, NamedShape, ShapeCount};
 pub use pose_estimate::{AngleEstimate, PlacedSource, PoseEstimate};
 pub use scan::Nearest;

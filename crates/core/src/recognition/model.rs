@@ -6,9 +6,10 @@ use std::sync::OnceLock;
 
 use crate::atlas::{ImprintKey, KeyRef, KeyTable};
 use crate::imprint::Imprint;
-use crate::parameter::number::share;
+use crate::parameter::number::{share, to_decimals};
 use crate::pose::{Anchor, Axis, MAX_POSES, Ranges};
 use crate::quote::shortened;
+use crate::recognition::fit::StartPoses;
 use crate::recognition::scan::KeyIndex;
 use crate::sensor::Sensor;
 use crate::source::Source;
@@ -70,11 +71,13 @@ pub struct Model {
     counts: Vec<ShapeCount>,
     /// The keys again, in the order in which a scan compares them; made by the first scan.
     scan: OnceLock<ScanTables>,
+    /// The poses from which fits of each shape start; made by its first fit.
+    fits: Vec<OnceLock<Option<StartPoses>>>,
 }
 
 impl PartialEq for Model {
     fn eq(&self, other: &Self) -> bool {
-        // Tables for scans follow from the keys.
+        // Tables for scans and fits follow from the others.
         self.head == other.head
             && self.keys == other.keys
             && self.starts == other.starts
@@ -127,6 +130,21 @@ impl ModelHead {
             shard: Shard::WHOLE,
             poses,
         }
+    }
+
+    /// Returns true if the poses of both differ at most by whole cells.
+    fn same_poses(&self, other: &Self) -> bool {
+        let within_a_cell = |own: &Self| {
+            let [x, y] = [Axis::X0, Axis::Y0].map(|axis| {
+                let range = own.ranges[axis];
+                (to_decimals(range.value(0).rem_euclid(1.0), 9), range.step())
+            });
+            let others = [Axis::Angle, Axis::ZoomX, Axis::ZoomY].map(|axis| own.ranges[axis]);
+            (x, y, others)
+        };
+        within_a_cell(self) == within_a_cell(other)
+            && (self.anchor, self.poses, self.shard) == (other.anchor, other.poses, other.shard)
+            && self.sensor.threshold() == other.sensor.threshold()
     }
 
     pub(super) fn same_training(&self, other: &Self) -> bool {
@@ -245,12 +263,49 @@ impl Model {
         let cut = head.cut.iter().all(|&cut| cut <= head.poses);
         check(cut, "more poses cut off than there are")?;
         Ok(Self {
+            fits: vec![OnceLock::new(); shapes],
             head,
             keys,
             starts,
             counts,
             scan: OnceLock::new(),
         })
+    }
+
+    /// Unites models of different shapes whose poses are one cell of the same steps and the same angles: the model of
+    /// all their shapes, on the largest of their sensors. Where on a sensor that cell lies changes no key, so it is the
+    /// model that one training of all shapes makes ([`Training::fitting`](super::Training::fitting)).
+    ///
+    /// # Errors
+    /// Returns an error if there is no model, if their poses differ in more than where the cell lies, or if two shapes
+    /// have the same name.
+    pub fn united(models: &[Self]) -> Result<Self, ModelError> {
+        let largest = models
+            .iter()
+            .rev()
+            .max_by_key(|model| model.sensor().side());
+        let Some(largest) = largest else {
+            return Err(ModelError::invalid("no shapes"));
+        };
+        let mut head = largest.head.clone();
+        (head.shapes, head.cut) = (Vec::new(), Vec::new());
+        let mut gathered = Gathered::default();
+        for model in models {
+            if !model.head.same_poses(&largest.head) {
+                return Err(ModelError::invalid("models of other poses"));
+            }
+            let first = u16::try_from(head.shapes.len()).unwrap_or(u16::MAX);
+            for index in 0..model.keys.len() {
+                for count in model.counts(index) {
+                    let shape = first.saturating_add(count.shape);
+                    gathered.add(model.keys.get(index), ShapeCount::new(shape, count.poses));
+                }
+            }
+            head.shapes.extend_from_slice(&model.head.shapes);
+            head.cut.extend_from_slice(&model.head.cut);
+        }
+        let counts = |index: usize| gathered.counts[index].iter().copied();
+        Self::of_table(head, &gathered.keys, counts)
     }
 
     /// Returns everything except the keys.
@@ -356,6 +411,11 @@ impl Model {
             }
             ScanTables { index, poses }
         })
+    }
+
+    pub(super) fn start_poses(&self, shape: usize) -> Option<&StartPoses> {
+        let starts = self.fits.get(shape)?;
+        starts.get_or_init(|| StartPoses::new(self, shape)).as_ref()
     }
 
     pub(super) fn weighted(&self, count: ShapeCount) -> u128 {
@@ -515,6 +575,31 @@ mod tests {
         shapes.push(shape(MAX_SHAPES));
         let refused = check_shapes(&shapes).expect_err("one more");
         assert_eq!(refused.to_string(), "32769 shapes, expected 1 to 32768");
+    }
+
+    #[test]
+    fn models_of_one_shape_each_are_united_to_the_model_of_all() {
+        use crate::recognition::{GridSteps, Training, equal_figures};
+        let steps = GridSteps::of(5, "0:330:30");
+        let mut shapes = equal_figures();
+        // Too large for 16 × 16, so the sensors differ.
+        let large = Figure::rectangle(16.0, 9.0).on(&Sensor::default());
+        shapes.insert(
+            2,
+            NamedShape::new("large", large.expect("in range")).weighted(3),
+        );
+        let trained = |shapes: Vec<NamedShape>| {
+            let training = Training::fitting(shapes, steps).expect("they fit");
+            training.run().expect("not stopped")
+        };
+        let parts = shapes.iter().map(|shape| trained(vec![shape.clone()]));
+        let parts: Vec<Model> = parts.collect();
+        assert_ne!(parts[0].sensor(), parts[2].sensor());
+        assert_eq!(Model::united(&parts), Ok(trained(shapes.clone())));
+        assert!(Model::united(&[parts[0].clone(), parts[0].clone()]).is_err());
+        let other = Training::fitting(vec![shapes[1].clone()], GridSteps::of(5, "0:345:15"));
+        let other = other.expect("it fits").run().expect("not stopped");
+        assert!(Model::united(&[parts[0].clone(), other]).is_err());
     }
 
     #[test]

@@ -318,6 +318,53 @@ impl KeyIndex {
         })
     }
 
+    /// Returns the `count` keys nearest to an imprint, the nearest first, each in its first nearest place; among equals,
+    /// the first keys.
+    pub(super) fn nearest_few(&self, observed: &Observed, count: usize) -> Vec<PlacedKey> {
+        let mut near: Vec<PlacedKey> = Vec::with_capacity(count + 1);
+        let order = |own: &PlacedKey| (own.distance, own.key, own.place.1, own.place.0);
+        let mut most = u32::MAX;
+        let boxes = self.boxes.iter().filter_map(|of| {
+            let windows = Windows::new(observed, of, u32::MAX);
+            let groups = self.groups[of.groups.clone()].iter();
+            let bounds = groups.filter_map(|group| windows.bound(observed, group.count));
+            Some((bounds.min()?, of, windows))
+        });
+        let mut boxes: Vec<(u32, &KeyBox, Windows)> = boxes.collect();
+        boxes.sort_by_key(|&(bound, ..)| bound);
+        for (_, of, windows) in boxes {
+            for group in &self.groups[of.groups.clone()] {
+                if windows.bound(observed, group.count) > Some(most) {
+                    continue;
+                }
+                let limit = most;
+                let take = |key: usize, place: BoxPosition, distance: u32| {
+                    let (key, place) = (wide(self.numbers[key]), (place.column, place.row));
+                    let own = PlacedKey {
+                        distance,
+                        key,
+                        place,
+                    };
+                    let same = near.iter().position(|other| other.key == key);
+                    match same {
+                        Some(at) if order(&near[at]) <= order(&own) => return most,
+                        Some(at) => drop(near.remove(at)),
+                        None => {}
+                    }
+                    let at = near.partition_point(|other| order(other) < order(&own));
+                    near.insert(at, own);
+                    near.truncate(count);
+                    if near.len() == count {
+                        most = near[count - 1].distance;
+                    }
+                    most
+                };
+                self.compare(group, group.keys.clone(), &windows, observed, limit, take);
+            }
+        }
+        near
+    }
+
     /// Returns the group of the least bound, with its box. None if no key fits the matrix.
     fn promising(&self, observed: &Observed) -> Option<(&KeyBox, &Group)> {
         let bounds = self.boxes.iter().filter_map(|of| {
@@ -537,14 +584,9 @@ impl Model {
     ) -> Option<Nearest> {
         // With dead taxels, the key of the imprint alone is not enough: a dead taxel may be a hole in it.
         if dead.is_none()
-            && let Some(key) = self.keys().find(&ImprintKey::of(observed))
+            && let Some(known) = self.nearest_known(observed)
         {
-            return Some(Nearest {
-                shape: self.most_frequent(key).0,
-                distance: 0,
-                imprint: *observed,
-                key,
-            });
+            return Some(known);
         }
         let rank = |key: usize| Reverse(self.most_frequent(key).1);
         let found = (self.index()).nearest(&Observed::new(observed, dead), rank)?;
@@ -558,6 +600,17 @@ impl Model {
             distance: found.distance,
             imprint,
             key: found.key,
+        })
+    }
+
+    /// Returns an imprint itself as the nearest one; None if no shape leaves it.
+    pub(super) fn nearest_known(&self, imprint: &Imprint) -> Option<Nearest> {
+        let key = self.keys().find(&ImprintKey::of(imprint))?;
+        Some(Nearest {
+            shape: self.most_frequent(key).0,
+            distance: 0,
+            imprint: *imprint,
+            key,
         })
     }
 
