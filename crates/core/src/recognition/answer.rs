@@ -3,7 +3,7 @@ use crate::imprint::Imprint;
 use crate::parameter::named;
 use crate::recognition::fit::Fit;
 use crate::recognition::likelihood::{NEGLIGIBLE, Noise, SearchMethod};
-use crate::recognition::model::Model;
+use crate::recognition::model::{Model, first_of_most};
 use crate::recognition::posterior::{Odds, Posterior};
 use crate::recognition::scan::Nearest;
 
@@ -118,6 +118,8 @@ const MOST_FITTED: usize = 3;
 
 /// The fits of a shape to all touches.
 struct ShapeFit {
+    /// The logarithm of the shape's probability times the odds of as many flips as taxels differ.
+    odds: f64,
     /// The taxels that differ, in all touches together.
     differs: u32,
     /// Whether each touch is fitted within the tolerance.
@@ -127,8 +129,9 @@ struct ShapeFit {
 
 impl Model {
     /// Names the shape that was touched. The posterior under the noise (1 % if none is given) ranks the shapes; the
-    /// likeliest three of at least 1 % are then fitted in continuous pose ([`Model::fit`]), and the one that differs
-    /// least from the touches is the answer, if it is within the tolerance. So an answer is about poses in general, not
+    /// likeliest three of at least 1 % are then fitted in continuous pose ([`Model::fit`]). The one of the greatest
+    /// probability, times that of as many flips as taxels differ from its fit, is the answer, if these are within the
+    /// tolerance. So an answer is about poses in general, not
     /// only about those of the model. Under a noise of 0, only imprints that the model holds are named, by their counts.
     ///
     /// Without any touch, the answer is the prior. If a noise is given, no answer is certain, since any shape may leave
@@ -157,109 +160,89 @@ impl Model {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn recognise(&self, evidence: Evidence<'_>) -> Answer {
-        let noise = evidence.noise.unwrap_or(&RANKING);
-        let touches = evidence.touches;
+        let (noise, touches) = (evidence.noise.unwrap_or(&RANKING), evidence.touches);
+        let may_flip = noise.flip() > 0.0;
+        let (posterior, method, mut nearest) = match noise.dead() {
+            None if !may_flip => (self.possible(touches), SearchMethod::Exact, None),
+            _ => self.posterior_of_touches(noise, touches),
+        };
+        if !may_flip {
+            let nearest_to = |touch| self.nearest_without(touch, noise.dead());
+            nearest = first_unknown(touches.iter(), nearest_to);
+        }
+        let likeliest = posterior.ranking.iter().take(posterior.likeliest);
+        let equals = likeliest.map(|&(shape, _)| shape).collect();
+        let (equals, fit) = if may_flip && !touches.is_empty() {
+            Self::best_fit(equals, &self.likely_fits(&posterior, evidence, noise))
+        } else {
+            (equals, None)
+        };
+        let alone = match evidence.noise {
+            None => self.possible(touches).only(),
+            // A taxel that may flip makes every shape possible.
+            Some(noise) if noise.flip() > 0.0 => None,
+            Some(_) => posterior.only(),
+        };
+        let is_alone = alone.is_some() && alone == equals.first().copied();
         let at_rim = (touches.iter()).any(|touch| may_be_cut_off(touch, noise.dead()));
         let answer = Answer {
             state: AnswerState::Unknown,
             shape: None,
             tied: Vec::new(),
             at_rim,
-            ranking: Vec::new(),
-            method: SearchMethod::Exact,
-            fit: None,
-            nearest: None,
-        };
-        if noise.flip() == 0.0 {
-            let (posterior, method) = match noise.dead() {
-                None => (self.possible(touches), SearchMethod::Exact),
-                Some(_) => {
-                    let (posterior, method, _) = self.posterior_of_touches(noise, touches);
-                    (posterior, method)
-                }
-            };
-            let nearest = first_unknown(touches.iter(), |touch| {
-                self.nearest_without(touch, noise.dead())
-            });
-            let likeliest = posterior.ranking.iter().take(posterior.likeliest);
-            let equals = likeliest.map(|&(shape, _)| shape).collect();
-            let is_alone = posterior.possible == 1;
-            let answer = Answer {
-                ranking: posterior.ranking,
-                method,
-                nearest,
-                ..answer
-            };
-            return answer.decided(equals, is_alone, evidence.reject_below);
-        }
-        let (posterior, method, nearest) = self.posterior_of_touches(noise, touches);
-        let ranks = posterior.ranking.iter().enumerate();
-        let likely = ranks.filter(|&(rank, &(_, own))| rank == 0 || own >= LIKELY);
-        let fits = likely.take(MOST_FITTED).filter_map(|(rank, &(shape, _))| {
-            let fit = self.fit_touches(shape, evidence, noise.dead())?;
-            Some((rank, fit))
-        });
-        let fits: Vec<(usize, ShapeFit)> = fits.collect();
-        let best = fits.iter().min_by_key(|(rank, fit)| (fit.differs, *rank));
-        let equals = match best {
-            None if touches.is_empty() => {
-                let likeliest = posterior.ranking.iter().take(posterior.likeliest);
-                likeliest.map(|&(shape, _)| shape).collect()
-            }
-            Some((rank, best)) if best.fits && *rank < posterior.likeliest => {
-                // Of those that are equally likely, some were perhaps not fitted.
-                let likeliest = posterior.ranking.iter().take(posterior.likeliest);
-                let worse = |shape: usize| {
-                    let mut fits = fits.iter().map(|(_, fit)| fit);
-                    fits.any(|fit| fit.worst.shape == shape && fit.differs > best.differs)
-                };
-                let equals = likeliest.map(|&(shape, _)| shape);
-                equals.filter(|&shape| !worse(shape)).collect()
-            }
-            Some((_, best)) if best.fits => vec![best.worst.shape],
-            _ => Vec::new(),
-        };
-        let is_alone = evidence.noise.is_none() && self.possible(touches).possible == 1;
-        let fit = best.map(|(_, fit)| fit.worst.clone());
-        let answer = Answer {
             ranking: posterior.ranking,
             method,
             fit,
             nearest,
-            ..answer
         };
         answer.decided(equals, is_alone, evidence.reject_below)
     }
 
-    /// Fits a shape to each of the touches. None if there are no touches, or if the shape cannot be fitted to one.
-    fn fit_touches(
-        &self,
-        shape: usize,
-        evidence: Evidence<'_>,
-        dead: Option<&Imprint>,
-    ) -> Option<ShapeFit> {
-        let mut all: Option<ShapeFit> = None;
-        for touch in evidence.touches {
-            let fit = self.fit(shape, touch, dead)?;
-            let fits = fit.differs <= evidence.tolerance(touch);
-            all = Some(match all {
-                None => ShapeFit {
-                    differs: fit.differs,
-                    fits,
-                    worst: fit,
-                },
-                Some(all) => ShapeFit {
-                    differs: all.differs + fit.differs,
-                    fits: all.fits && fits,
-                    worst: if fit.differs > all.worst.differs {
-                        fit
-                    } else {
-                        all.worst
-                    },
-                },
-            });
+    /// Returns the shapes that nothing tells apart after the fits, none if no shape fits, and the best fit. `equals` are
+    /// the likeliest shapes.
+    fn best_fit(mut equals: Vec<usize>, fits: &[ShapeFit]) -> (Vec<usize>, Option<Fit>) {
+        let best = first_of_most(fits.iter().map(|fit| fit.odds).enumerate());
+        let Some(best) = best.map(|(best, _)| &fits[best]) else {
+            return (Vec::new(), None);
+        };
+        let is_worse =
+            |fit: &ShapeFit, shape| fit.worst.shape == shape && fit.differs > best.differs;
+        // Some of many that are equally likely were not fitted.
+        equals.retain(|&shape| best.fits && !fits.iter().any(|fit| is_worse(fit, shape)));
+        if best.fits && !equals.contains(&best.worst.shape) {
+            equals = vec![best.worst.shape];
         }
-        all
+        (equals, Some(best.worst.clone()))
+    }
+
+    /// Fits the likeliest shapes to all touches, the likeliest first.
+    fn likely_fits(
+        &self,
+        posterior: &Posterior,
+        evidence: Evidence<'_>,
+        noise: &Noise,
+    ) -> Vec<ShapeFit> {
+        let likely = posterior.ranking.iter().take(MOST_FITTED).enumerate();
+        let likely = likely.filter(|&(rank, &(_, own))| rank == 0 || own >= LIKELY);
+        let fitted = likely.filter_map(|(_, &(shape, probability))| {
+            let fits = evidence.touches.iter().map(|touch| {
+                let fit = self.fit(shape, touch, noise.dead())?;
+                Some((fit.differs <= evidence.tolerance(touch), fit))
+            });
+            let fits: Vec<(bool, Fit)> = fits.collect::<Option<_>>()?;
+            let differs = fits.iter().map(|(_, fit)| fit.differs).sum();
+            let flips = f64::from(differs) * libm::log(noise.ratio());
+            let within = fits.iter().all(|&(fits, _)| fits);
+            // Of equals, the first.
+            let worst = fits.into_iter().rev().max_by_key(|(_, fit)| fit.differs);
+            Some(ShapeFit {
+                odds: libm::log(probability) + flips,
+                differs,
+                fits: within,
+                worst: worst?.1,
+            })
+        });
+        fitted.collect()
     }
 
     /// Returns the probabilities of the shapes under a noise, and which keys were compared.

@@ -34,6 +34,9 @@ const SCALES: [f64; 6] = [1.5, 1.0, 0.5, 0.25, 0.125, 0.0625];
 /// The most moves at one scale. A search moves once or twice at each; the limit only keeps a long way short.
 const MOVES: usize = 20;
 
+/// Far less than a step, far more than a rounding error.
+const SAME: f64 = 1e-9;
+
 /// Positions are rounded to this many decimals, so that they can be written and read again.
 const DECIMALS: i32 = 6;
 
@@ -147,8 +150,6 @@ fn thinned(range: DecimalRange, most: f64, span: f64) -> Option<DecimalRange> {
         reason = "quotients of positive numbers of a range, rounded"
     )]
     let whole = |number: f64| libm::round(number) as u64;
-    // Far less than a step, far more than a rounding error.
-    const SAME: f64 = 1e-9;
     let stride = whole(libm::floor(most / range.step() + SAME)).max(1);
     let within = whole(libm::ceil(span / range.step() - SAME)).max(1);
     let part = range.part(0..range.count().min(within))?;
@@ -320,5 +321,110 @@ impl Model {
             source,
             imprint,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Figure;
+    use crate::pose::{Anchor, Pose, Ranges};
+    use crate::recognition::{GridSteps, NamedShape, Training};
+
+    fn shapes() -> [NamedShape; 3] {
+        let sensor = Sensor::default();
+        [
+            ("bar", Figure::rectangle(7.0, 2.5)),
+            ("hexagon", Figure::hexagon(3.4)),
+            ("disc", Figure::ellipse(3.1, 3.1)),
+        ]
+        .map(|(name, figure)| NamedShape::new(name, figure.on(&sensor).expect("in range")))
+    }
+
+    fn model() -> Model {
+        let training = Training::fitting(shapes(), GridSteps::of(5, "0:357:3"));
+        training.expect("they fit").run().expect("not stopped")
+    }
+
+    /// A touch between the poses of the model, with its centre near a point of a 16 × 16 sensor.
+    fn touch(shape: usize, [x, y]: [f64; 2], angle: f64) -> Imprint {
+        let sensor = Sensor::default();
+        let source = shapes()[shape].source.clone();
+        let grid = PoseGrid::new(source, sensor, Anchor::Centre, Ranges::default());
+        let pose = Pose::from_fn(|axis| match axis {
+            Axis::X0 => x,
+            Axis::Y0 => y,
+            Axis::Angle => angle,
+            _ => 1.0,
+        });
+        Plane::new(sensor).touch(&grid.expect("in range").placed_in(pose))
+    }
+
+    /// Fits, and checks that the fitted shape leaves the imprint that the fit states.
+    fn fitted(shape: usize, touch: &Imprint, dead: Option<&Imprint>) -> Fit {
+        let fit = model().fit(shape, touch, dead).expect("it fits");
+        let again = Plane::new(Sensor::default()).touch(&fit.source);
+        assert_eq!(again, fit.imprint);
+        let differing = again.differing(touch);
+        let differing = dead.map_or(differing, |dead| differing.without(dead));
+        assert_eq!((fit.shape, fit.differs), (shape, differing.count()));
+        fit
+    }
+
+    #[test]
+    fn touches_between_the_poses_of_a_model_are_fitted() {
+        let model = model();
+        for shape in 0..3 {
+            for (x, y, angle) in [(7.63, 8.11, 31.4), (8.27, 7.75, 304.9), (7.49, 7.92, 171.7)] {
+                let touch = touch(shape, [x, y], angle);
+                let fit = fitted(shape, &touch, None);
+                assert_eq!(fit.differs, 0, "{shape} {x} {y} {angle}");
+                // A disc is never turned.
+                let turned = fit.source.get(Parameter::Angle).expect("an angle");
+                assert!(shape != 2 || turned == 0.0, "{turned}");
+            }
+        }
+        let bar = touch(0, [7.63, 8.11], 31.4);
+        assert!(fitted(1, &bar, None).differs > 5 && fitted(2, &bar, None).differs > 5);
+        assert_eq!(model.fit(3, &touch(0, [8.0, 8.0], 0.0), None), None);
+        assert_eq!(
+            model.fit(0, &Imprint::empty(MatrixSize::of(16, 16)), None),
+            None
+        );
+        let taxel = "#".parse().expect("a taxel");
+        assert_eq!(model.fit(0, &taxel, None), None);
+    }
+
+    #[test]
+    fn a_shape_is_fitted_over_the_rim_and_behind_dead_taxels() {
+        for (x, y) in [(1.32, 8.24), (15.21, 14.87), (8.1, -0.4)] {
+            let touch = touch(1, [x, y], 17.3);
+            assert!(touch.touches_rim());
+            assert_eq!(fitted(1, &touch, None).differs, 0, "{x} {y}");
+        }
+        let whole = touch(0, [7.63, 8.11], 31.4);
+        let mut dead = Imprint::empty(whole.size());
+        let mut seen = whole;
+        for row in 6..9 {
+            dead.set(8, row, true);
+            seen.set(8, row, false);
+        }
+        assert_eq!(fitted(0, &seen, Some(&dead)).differs, 0);
+        assert!(fitted(0, &seen, None).differs > 0);
+    }
+
+    #[test]
+    fn an_angle_that_the_model_does_not_vary_stays() {
+        let ranges = Ranges::default().with(Axis::Angle, "30".parse().expect("an angle"));
+        let training = Training::new(shapes(), Sensor::default(), Anchor::Corner, ranges);
+        let model = training.expect("a set").run().expect("not stopped");
+        let angle = |degrees| {
+            let fit = model.fit(0, &touch(0, [8.37, 8.24], degrees), None);
+            let fit = fit.expect("it fits");
+            (fit.differs, fit.source.get(Parameter::Angle))
+        };
+        assert_eq!(angle(30.0), (0, Some(30.0)));
+        let (differs, kept) = angle(75.0);
+        assert!(differs > 3 && kept == Some(30.0), "{differs} {kept:?}");
     }
 }

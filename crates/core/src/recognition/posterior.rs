@@ -52,6 +52,12 @@ impl Posterior {
         }
     }
 
+    /// The only possible shape; None if there are others, or none.
+    pub(super) fn only(&self) -> Option<usize> {
+        let first = self.ranking.first().filter(|_| self.possible == 1);
+        first.map(|&(shape, _)| shape)
+    }
+
     /// Creates a posterior from the logarithms of the odds after some touches; −∞ for odds of 0.
     pub(super) fn of_logarithms(logarithms: &[f64], touches: usize) -> Self {
         let all = logarithms.iter().copied().enumerate();
