@@ -1,5 +1,5 @@
-//! The program taxel: `cli` is the command line, `tui` the screen, and
-//! `frames` what both do with frames of a sensor. They are public only for tests, benchmarks and
+//! The program taxel: `cli` is the command line, `tui` the screen;
+//! `frames` is what both do with frames of a sensor, `naming` how both name touches. They are public only for tests, benchmarks and
 //! other packages of the program; the libraries are `taxel-core` and `taxel-files`.
 
 // Compiles and runs the examples of the README and of the guide to the library as tests of the documentation.
@@ -16,5 +16,5 @@ compile_error!("taxel needs a Unix-like system; on Windows use WSL");
 
 pub mod cli;
 pub mod frames;
+mod naming;
 pub mod tui;
-mod verdict;

@@ -11,10 +11,11 @@ use std::ffi::OsStr;
 use std::path::PathBuf;
 
 use taxel_core::frame::{Frame, FrameError, Processing, Rule, RuleOrigin, SetRule, TareFrames};
-use taxel_core::recognition::Noise;
 use taxel_files::acquire::{AcquireOptions, FrameSource};
 use taxel_files::formats::recording::ChannelInfo;
 use taxel_files::storage::{Existing, ModelChoice};
+
+use crate::naming::Terms;
 
 /// The memory for the frames that the live page can go back to, in bytes, unless another size is set.
 pub const HISTORY_BYTES: usize = 32 << 20;
@@ -29,7 +30,8 @@ pub struct WatchRequest {
     pub pipeline: Pipeline,
     pub write: Option<(PathBuf, Existing)>,
     pub model: Option<ModelChoice>,
-    pub noise: Option<Noise>,
+    /// On what terms the model names imprints.
+    pub terms: Terms,
     pub history_bytes: usize,
 }
 
@@ -49,16 +51,9 @@ impl WatchRequest {
             pipeline: Pipeline::default(),
             write: None,
             model: None,
-            noise: None,
+            terms: Terms::default(),
             history_bytes: HISTORY_BYTES,
         }
-    }
-
-    /// The noise, without the dead cells of the mask.
-    pub fn noise(&self) -> Option<Noise> {
-        let mask = self.pipeline.processing.view.mask;
-        self.noise
-            .map(|noise| mask.map_or(noise, |mask| noise.with_dead(mask)))
     }
 
     /// The name of the source for messages, without folders.

@@ -1,5 +1,6 @@
 //! A matrix with one value per taxel, row by row from the top left: for example the measurements of a sensor's cells.
 
+use crate::imprint::Imprint;
 use crate::sensor::MatrixSize;
 
 /// A matrix of 1 × 1 to 64 × 64 values, row-major.
@@ -60,6 +61,17 @@ impl<T: Copy> Matrix<T> {
     /// Returns all values for writing, row by row.
     pub fn values_mut(&mut self) -> &mut [T] {
         &mut self.values
+    }
+
+    /// Returns the cells whose value satisfies a condition.
+    pub fn cells_where(&self, holds: impl Fn(T) -> bool) -> Imprint {
+        let mut cells = Imprint::empty(self.size);
+        for row in 0..self.rows() {
+            for (column, &value) in (0..self.columns()).zip(self.row(row)) {
+                cells.set(column, row, holds(value));
+            }
+        }
+        cells
     }
 
     /// Returns the values of a row from the left; empty beyond the last row.

@@ -266,7 +266,10 @@ impl WatchFlags {
         } else {
             Playback::paced(own.speed.unwrap_or(1.0), own.repeat)
         };
-        let pipeline = frames.pipeline(&usual.pipeline)?;
+        let (pipeline, terms) = (
+            frames.pipeline(&usual.pipeline)?,
+            self.naming.terms.terms()?,
+        );
         options.time_column = frames.time_column;
         options.label_column = frames.label_column;
         options.channel = frames.channel;
@@ -277,7 +280,7 @@ impl WatchFlags {
             pipeline,
             write: None,
             model: self.naming.model.map(ModelChoice::from_text),
-            noise: self.naming.noise,
+            terms,
             history_bytes: usual.history_bytes,
         })
     }

@@ -125,7 +125,9 @@ fn of_answers(arg: Arg) -> Arg {
     match arg.get_id().as_str() {
         "tare" | "gain" | "flip" | "turn" | "at_least" | "percent" | "low" | "high"
         | "deviations" | "least" => arg.requires("answered"),
-        "model" | "noise" | "pitch_mm" => arg.requires("choice").conflicts_with("noise_report"),
+        "model" | "noise" | "tolerance" | "pitch_mm" => {
+            arg.requires("choice").conflicts_with("noise_report")
+        }
         "save" => arg
             .requires("choice")
             .conflicts_with_all(["all", "noise_report"]),
@@ -172,8 +174,7 @@ impl Frames {
         let pipeline = self
             .reading
             .pipeline(&cx.settings.watch_request().pipeline)?;
-        let mask = pipeline.processing.view.mask.as_ref();
-        let found = self.naming.find(mask, &cx.shelf)?;
+        let found = self.naming.find(&cx.shelf)?;
         let recording = RecordingFile::open(&self.file, self.reading.reading())?;
         let namer = found.map(|found| found.ready(false)).transpose()?;
         let answering = Answering {
@@ -746,13 +747,14 @@ impl Answering<'_> {
         if let Some(content) = kept.keep(drawn, shape, &self.cx.shelf, &mut lines)? {
             return self.write(content);
         }
+        let dead = processed.tared.cells_where(f64::is_nan);
         if self.asked.json {
             for note in &lines[titles.len()..] {
                 self.cx.note(note);
             }
             let mut line = json::ascii(&answer).into_bytes();
             match &self.namer {
-                Some(namer) => namer.extend(&mut line, Some(&imprint)),
+                Some(namer) => namer.extend(&mut line, Some(&imprint), &dead),
                 None => line.push(b'\n'),
             }
             return self.write(line);
@@ -763,7 +765,7 @@ impl Answering<'_> {
             text += &(heat_map(values, &charset.line(&unit(info)), charset) + "\n");
         }
         text += &report::table(&imprint, &lines, pitch);
-        let named = self.namer.as_ref().map(|namer| namer.text(&imprint));
+        let named = self.namer.as_ref().map(|namer| namer.text(&imprint, &dead));
         if let Some(named) = named.filter(|named| !named.is_empty()) {
             text.push('\n');
             text += &named;
@@ -831,7 +833,9 @@ impl Answering<'_> {
         }
         let mut counter: Option<FlipCounter> = None;
         self.each(recording, index, pipeline, |_, processed| {
-            let counter = counter.get_or_insert_with(|| FlipCounter::new(cells(processed.raw)));
+            let counter = counter.get_or_insert_with(|| {
+                FlipCounter::new(processed.raw.cells_where(|value| !value.is_nan()))
+            });
             if let Some(imprint) = &processed.imprint {
                 counter.add(imprint);
             }
@@ -904,17 +908,6 @@ fn stored(name: Name, imprint: &Imprint, pitch: Option<f64>) -> StoredShape {
         imprint: *imprint,
         source: None,
     }
-}
-
-/// The cells that have a value.
-fn cells(values: &Matrix<f64>) -> Imprint {
-    let mut cells = Imprint::empty(values.size());
-    for row in 0..values.rows() {
-        for (column, value) in (0..values.columns()).zip(values.row(row)) {
-            cells.set(column, row, !value.is_nan());
-        }
-    }
-    cells
 }
 
 fn noise_json(found: &FlipReport) -> Record<'static> {

@@ -15,7 +15,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::index::wide;
 use taxel_core::progress::ToTheEnd;
 use taxel_core::quote::did_you_mean;
-use taxel_core::recognition::{Answer, AnswerState, Evidence, Model, Noise, NoiseError};
+use taxel_core::recognition::{Answer, AnswerState, Model, Noise, NoiseError};
 use taxel_files::ReadError;
 use taxel_files::formats::file::without_mark;
 use taxel_files::formats::job::{FrameRows, RuleRecord};
@@ -33,6 +33,7 @@ use crate::cli::input::content::Input;
 use crate::cli::input::lines::{self, MAX_LINE};
 use crate::cli::input::shapes::{Located, Shelf};
 use crate::cli::output::answer::{PoseReport, Recognition};
+use crate::naming::Terms;
 
 const EXAMPLES: &str = r#"Reads an imprint in any format that 'taxel describe' reads, or lines of JSON:
   {"imprint":["..##",...]}              one touch
@@ -77,11 +78,10 @@ pub(crate) struct Recognise {
     /// Exit with status 3 if this is not the answer
     #[arg(long, value_name = "NAME")]
     expect: Option<String>,
-    /// Each taxel flips with this probability (below 0.5)
-    #[arg(long, value_name = "E", value_parser = noise)]
-    noise: Option<Noise>,
-    /// Imprint whose active taxels are dead, stuck on or off; needs --noise
-    #[arg(long, value_name = "NAME|FILE", value_parser = name_or_path(), requires = "noise")]
+    #[command(flatten)]
+    terms: TermsFlags,
+    /// Imprint whose active taxels are dead, stuck on or off
+    #[arg(long, value_name = "NAME|FILE", value_parser = name_or_path())]
     mask: Option<OsString>,
     /// Say where the shape lies and how it is turned
     #[arg(long)]
@@ -99,29 +99,48 @@ pub(crate) struct Recognise {
 /// The model that names the shapes of frames.
 #[derive(Clone, Debug, Default, clap::Args)]
 #[command(next_help_heading = "Recognition")]
+#[command(mut_arg("noise", |noise| noise.requires("model")))]
+#[command(mut_arg("tolerance", |tolerance| tolerance.requires("model")))]
 pub(crate) struct NamingFlags {
     /// Name the shape that left the imprint: name or file of a model; built in are figures, figures-30 and shapes
     #[arg(long, value_name = "MODEL", value_parser = name_or_path())]
     pub(crate) model: Option<OsString>,
-    /// Each taxel flips with this probability (below 0.5)
-    #[arg(long, value_name = "E", value_parser = noise, requires = "model")]
-    pub(crate) noise: Option<Noise>,
+    #[command(flatten)]
+    pub(crate) terms: TermsFlags,
 }
 
 impl NamingFlags {
-    /// What names frames, if it is asked for, once a built-in model is trained: [`FoundNamer::ready`]. `mask` has the
-    /// cells without a value.
-    pub(crate) fn find(
-        &self,
-        mask: Option<&Imprint>,
-        shelf: &Shelf,
-    ) -> Result<Option<FoundNamer>, Failure> {
-        let Some(model) = &self.model else {
-            return Ok(None);
+    /// What names frames, if it is asked for, once a built-in model is trained: [`FoundNamer::ready`].
+    pub(crate) fn find(&self, shelf: &Shelf) -> Result<Option<FoundNamer>, Failure> {
+        let terms = self.terms.terms()?;
+        let found = self.model.as_ref().map(|model| model::find(model, shelf));
+        Ok(found.transpose()?.map(|found| FoundNamer(found, terms)))
+    }
+}
+
+#[derive(Clone, Debug, Default, clap::Args)]
+pub(crate) struct TermsFlags {
+    /// Each taxel flips with this probability (below 0.5); with 0 only trained poses count
+    #[arg(long, value_name = "E", value_parser = noise)]
+    noise: Option<Noise>,
+    /// Taxels that may differ from a shape that fits; more for large imprints and noise unless given
+    #[arg(long, value_name = "K", value_parser = whole(0_u32..))]
+    tolerance: Option<u32>,
+}
+
+impl TermsFlags {
+    pub(crate) fn terms(&self) -> Result<Terms, Failure> {
+        let terms = Terms {
+            noise: self.noise,
+            tolerance: self.tolerance,
+            reject_below: None,
         };
-        let with_mask = |noise: Noise| mask.map_or(noise, |mask| noise.with_dead(*mask));
-        let found = model::find(model, shelf)?;
-        Ok(Some(FoundNamer(found, self.noise.map(with_mask))))
+        if self.tolerance.is_some() && terms.noise.is_some_and(|noise| noise.flip() == 0.0) {
+            return Err(Failure::usage(
+                "the argument '--tolerance <K>' cannot be used with '--noise 0', which fits no shape",
+            ));
+        }
+        Ok(terms)
     }
 }
 
@@ -132,15 +151,15 @@ fn noise(text: &str) -> Result<Noise, String> {
 
 /// A [`Namer`] whose model may have to be trained.
 #[derive(Debug)]
-pub(crate) struct FoundNamer(FoundModel, Option<Noise>);
+pub(crate) struct FoundNamer(FoundModel, Terms);
 
 impl FoundNamer {
     /// Trains a built-in model that is not in the cache; this may take some seconds.
     pub(crate) fn ready(self, quiet: bool) -> Result<Namer, Failure> {
         Ok(Namer {
             model: model::ready(self.0, quiet)?,
-            noise: self.1,
-            reject: None,
+            terms: self.1,
+            mask: None,
             top: None,
             asks_pose: false,
             pitch_mm: None,
@@ -152,9 +171,9 @@ impl FoundNamer {
 #[derive(Debug)]
 pub(crate) struct Namer {
     pub(crate) model: Model,
-    pub(crate) noise: Option<Noise>,
-    /// The probability below which an answer is rejected.
-    reject: Option<f64>,
+    pub(crate) terms: Terms,
+    /// The dead taxels.
+    mask: Option<Imprint>,
     /// The number of shapes of the ranking that are shown; None for eight in words and all in JSON.
     pub(crate) top: Option<usize>,
     pub(crate) asks_pose: bool,
@@ -163,12 +182,11 @@ pub(crate) struct Namer {
 }
 
 impl Namer {
-    fn answer(&self, touches: &[Imprint]) -> Recognition<'_> {
-        let mut evidence = Evidence::of(touches).under(self.noise.as_ref());
-        evidence.reject_below = self.reject;
+    fn answer<'a>(&'a self, touches: &[Imprint], dead: Option<&'a Imprint>) -> Recognition<'a> {
         Recognition {
             namer: self,
-            answer: self.model.recognise(evidence),
+            answer: self.terms.answer(&self.model, touches, dead),
+            dead,
             pose: None,
             copied: Vec::new(),
         }
@@ -176,14 +194,14 @@ impl Namer {
 
     /// The answer to touches that may not fit the mask, with the pose if it is asked for.
     fn checked_answer(&self, touches: &[Imprint]) -> Result<Recognition<'_>, Failure> {
-        let mask = self.noise.as_ref().and_then(Noise::dead);
+        let mask = self.mask.as_ref();
         for touch in touches.iter().map(Imprint::size) {
             if let Some(mask) = mask.map(Imprint::size).filter(|mask| *mask != touch) {
                 let text = format!("--mask has {mask} taxels, the imprint {touch}");
                 return Err(Failure::new(text));
             }
         }
-        let mut answer = self.answer(touches);
+        let mut answer = self.answer(touches, mask);
         if let Some(touch) = touches.last().filter(|_| self.asks_pose) {
             answer.pose = self.pose(touch, &answer.answer)?;
         }
@@ -197,36 +215,35 @@ impl Namer {
         };
         let memory = MemoryGuard::new(None, "train the model in coarser steps to see poses");
         let poses = memory.limit(&ToTheEnd, |progress| {
-            self.model.poses_of(shape, touch, 1, progress)
+            self.model.pose_of(shape, touch, progress)
         });
         let found = poses.map_err(Failure::new)?.zip(touch.bounds());
-        Ok(found.map(|((estimate, mut placed), bounds)| PoseReport {
+        Ok(found.map(|(estimate, bounds)| PoseReport {
             name: self.model.shapes()[shape].name.clone(),
             estimate,
             corner: [bounds.left.into(), bounds.top.into()],
-            placed: placed.pop(),
             pitch_mm: self.pitch_mm,
         }))
     }
 
     /// Adds the key `recognition` to the end of a frame's line of JSON: the answer of `taxel recognise` to the
-    /// imprint, or null if no taxel is active.
-    pub(crate) fn extend(&self, line: &mut Vec<u8>, imprint: Option<&Imprint>) {
+    /// imprint, or null if no taxel is active. `dead` has the cells without a value.
+    pub(crate) fn extend(&self, line: &mut Vec<u8>, imprint: Option<&Imprint>, dead: &Imprint) {
         line.truncate(line.iter().rposition(|&byte| byte == b'}').unwrap_or(0));
         line.extend(b",\"recognition\":");
         match imprint.filter(|imprint| !imprint.is_empty()) {
             None => line.extend(b"null"),
-            Some(&imprint) => json::extend_ascii(line, &self.answer(&[imprint])),
+            Some(&imprint) => json::extend_ascii(line, &self.answer(&[imprint], Some(dead))),
         }
         line.extend(b"}\n");
     }
 
     /// The answer to an imprint in words; empty if no taxel is active.
-    pub(crate) fn text(&self, imprint: &Imprint) -> String {
+    pub(crate) fn text(&self, imprint: &Imprint, dead: &Imprint) -> String {
         if imprint.is_empty() {
             return String::new();
         }
-        self.answer(&[*imprint]).text(imprint)
+        self.answer(&[*imprint], Some(dead)).text(imprint)
     }
 }
 
@@ -235,14 +252,10 @@ impl Recognise {
         let pitch_mm = self.pitch.pitch(&cx.settings)?.of(None);
         let model = self.model.clone().unwrap_or(model::DEFAULT.into());
         let found = model::find(model, &cx.shelf)?;
-        let noise = match (self.noise, &self.mask) {
-            (Some(noise), Some(mask)) => {
-                let mask = cx.shelf.find(mask);
-                let mask = mask.map_err(|error| error.of_flag("--mask"))?;
-                Some(noise.with_dead(*mask.imprint()))
-            }
-            (noise, _) => noise,
-        };
+        let mut terms = self.terms.terms()?;
+        terms.reject_below = self.reject;
+        let mask = self.mask.as_ref().map(|mask| cx.shelf.find(mask));
+        let mask = mask.transpose().map_err(|error| error.of_flag("--mask"))?;
         let input = self.input(cx)?;
         let names = || found.shapes().iter().map(|shape| &*shape.name);
         if let Some(expected) = &self.expect
@@ -254,11 +267,11 @@ impl Recognise {
             return Err(Failure::new(text + &shapes + &near)).named("--expect");
         }
         let namer = Namer {
-            reject: self.reject,
+            mask: mask.map(|mask| *mask.imprint()),
             top: self.top.map(wide),
             asks_pose: self.pose,
             pitch_mm,
-            ..FoundNamer(found, noise).ready(false)?
+            ..FoundNamer(found, terms).ready(false)?
         };
         match input {
             Question::Touch(content) => self.answer_imprint(&content, &namer, cx),

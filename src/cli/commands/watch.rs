@@ -136,8 +136,7 @@ fn watch(request: &WatchRequest, naming: &NamingFlags, cx: &Context) -> Result<(
     check(source, request)?;
     // Errors in these are reported before a recording begins. Training shows no progress: standard error is for
     // oddities of the source.
-    let mask = request.pipeline.processing.view.mask.as_ref();
-    let namer = naming.find(mask, &cx.shelf)?;
+    let namer = naming.find(&cx.shelf)?;
     let lines = LineWriter::start(&signals.stopped, namer)?;
     let recording = recording(source, request)?;
     let mut watcher = Watcher {
@@ -412,7 +411,8 @@ impl Watcher<'_> {
             processed,
         };
         let line = json::ascii(&answer) + "\n";
-        let line = (line.into_bytes(), processed.imprint);
+        let dead = processed.tared.cells_where(f64::is_nan);
+        let line = (line.into_bytes(), processed.imprint, dead);
         if lines.send(line, self.may_give_up) {
             Ok(())
         } else {
@@ -596,7 +596,8 @@ const PAUSE: Duration = Duration::from_millis(1);
 /// The time that a reader has, after a signal, to read what is waiting.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-type Line = (Vec<u8>, Option<Imprint>);
+/// A line, with the imprint of its frame and the cells without a value.
+type Line = (Vec<u8>, Option<Imprint>, Imprint);
 
 /// Writes lines to standard output on a thread of its own, so that a slow reader does not hold up a recording. With a
 /// model, that thread also names each imprint.
@@ -671,11 +672,11 @@ fn write_lines(waiting: &Receiver<Line>, namer: Option<&Namer>) -> io::Result<()
             }
             next => next.ok(),
         };
-        let Some((mut line, imprint)) = next else {
+        let Some((mut line, imprint, dead)) = next else {
             return output.flush();
         };
         if let Some(namer) = namer {
-            namer.extend(&mut line, imprint.as_ref());
+            namer.extend(&mut line, imprint.as_ref(), &dead);
         }
         output.write_all(&line)?;
     }

@@ -5,18 +5,17 @@ use serde::{Serialize, Serializer};
 use serde_json::value::RawValue;
 use taxel_core::geometry::{Ellipse, Pen, Point, Side, Solid};
 use taxel_core::imprint::Imprint;
-use taxel_core::parameter::number::{differing, short};
-use taxel_core::recognition::{
-    AngleEstimate, Answer, AnswerState, Nearest, Noise, PlacedSource, PoseEstimate, SearchMethod,
-};
+use taxel_core::parameter::Parameter;
+use taxel_core::parameter::number::differing;
+use taxel_core::recognition::{AngleEstimate, Answer, AnswerState, PoseEstimate};
 use taxel_files::formats::value::{self, decimal, deviation, percent};
 
 use crate::cli::commands::recognise::Namer;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::plot::draw_over;
 use crate::cli::output::table::bar;
+use crate::naming::verdict;
 use crate::tui::widget::plot::DotCanvas;
-use crate::verdict::verdict;
 
 const SHOWN: usize = 8;
 
@@ -27,6 +26,8 @@ const BAR: usize = 30;
 pub(crate) struct Recognition<'a> {
     pub(crate) namer: &'a Namer,
     pub(crate) answer: Answer,
+    /// The taxels that were left out.
+    pub(crate) dead: Option<&'a Imprint>,
     /// The place of the shape; None if it is unknown.
     pub(crate) pose: Option<PoseReport>,
     /// The keys of a line that its answer repeats.
@@ -39,6 +40,18 @@ impl Serialize for Recognition<'_> {
         struct Ranked<'a> {
             name: &'a str,
             probability: f64,
+        }
+        #[derive(Serialize)]
+        struct FitJson<'a> {
+            name: &'a str,
+            differs: u32,
+            x0: Option<f64>,
+            y0: Option<f64>,
+            angle: Option<f64>,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            zoom_x: Option<f64>,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            zoom_y: Option<f64>,
         }
         #[derive(Serialize)]
         struct NearestJson<'a> {
@@ -59,7 +72,7 @@ impl Serialize for Recognition<'_> {
             map.serialize_entry("tied", &tied)?;
         }
         map.serialize_entry("method", answer.method.name())?;
-        map.serialize_entry("noise", &self.namer.noise.map(|noise| noise.flip()))?;
+        map.serialize_entry("noise", &self.namer.terms.noise.unwrap_or_default().flip())?;
         map.serialize_entry("at_rim", &answer.at_rim)?;
         let ranking = answer
             .ranking
@@ -70,6 +83,22 @@ impl Serialize for Recognition<'_> {
             probability,
         });
         map.serialize_entry("ranking", &ranking.collect::<Vec<_>>())?;
+        let fit = answer.fit.as_ref().map(|fit| {
+            let at = |parameter| fit.source.get(parameter);
+            let zooms = [Parameter::ZoomX, Parameter::ZoomY].map(at);
+            let is_zoomed = zooms.iter().flatten().any(|&zoom| zoom != 1.0);
+            let [zoom_x, zoom_y] = zooms.map(|zoom| zoom.filter(|_| is_zoomed));
+            FitJson {
+                name: name(fit.shape),
+                differs: fit.differs,
+                x0: at(Parameter::X0),
+                y0: at(Parameter::Y0),
+                angle: at(Parameter::Angle),
+                zoom_x,
+                zoom_y,
+            }
+        });
+        map.serialize_entry("fit", &fit)?;
         let nearest = self.answer.nearest.as_ref().map(|nearest| NearestJson {
             name: name(nearest.shape),
             distance: nearest.distance,
@@ -84,28 +113,18 @@ impl Serialize for Recognition<'_> {
 }
 
 impl Recognition<'_> {
-    /// The answer to one touch for people: the name and how far it can be trusted, bars, and the nearest imprint.
+    /// The answer to one touch for people: the verdict, bars, and the taxels that differ.
     /// ```text
-    /// ellipse: likely
+    /// ellipse  87.3 %  2 taxels differ at 5.04, 6.10, 40.5°
     ///   ellipse  ##########################         87.3 %
     ///   hexagon  ####                               12.7 %
-    /// nearest: ellipse, 2 taxels differ
-    ///   ..##+...
-    ///   ..##-...
-    ///   # both   + only in the touch   - only in the nearest imprint
+    ///   . . # # + . . .
+    ///   . . # # - . . .
+    ///   # both   + only in the touch   - only in the fitted shape
     /// ```
     pub(crate) fn text(&self, touch: &Imprint) -> String {
         let answer = &self.answer;
         let mut text = verdict(answer, &self.namer.model) + "\n";
-        // If no imprint of the model fits on the matrix, nothing was compared.
-        if let (Some(noise), Some(_)) = (self.namer.noise, &answer.nearest) {
-            let compared = match answer.method {
-                SearchMethod::Exact => "only the imprint itself is looked up",
-                SearchMethod::OneFlip => "compared with imprints that differ by at most one taxel",
-                SearchMethod::Scan => "compared with every imprint of the model in every place",
-            };
-            text += &format!("noise {}: {compared}\n", short(noise.flip()));
-        }
         if answer.at_rim {
             text += "the imprint reaches the rim of the matrix: it may be cut off\n";
         }
@@ -119,45 +138,79 @@ impl Recognition<'_> {
         if answer.ranking.len() > top {
             text += &format!("  and {} more\n", answer.ranking.len() - top);
         }
-        if let Some(nearest) = self.answer.nearest.as_ref().filter(|own| own.distance > 0) {
-            text += &self.differences(touch, nearest);
-        }
-        let pose = match &self.pose {
-            Some(pose) => pose.text(touch),
-            None if self.namer.asks_pose => {
-                "no pose of the model is known for this imprint\n".to_owned()
+        match (&self.pose, answer.shape) {
+            (Some(pose), _) => text += &pose.text(),
+            (None, Some(shape)) if self.namer.asks_pose => {
+                let name = self.name(shape);
+                text += &format!("{name} leaves this imprint in none of the poses of a grid\n");
             }
-            None => String::new(),
-        };
-        Charset::current().lines(&text) + &pose
+            _ => {}
+        }
+        Charset::current().lines(&text) + &self.drawn(touch)
     }
 
     pub(crate) fn name(&self, shape: usize) -> &str {
         &self.namer.model.shapes()[shape].name
     }
 
-    /// Draws the touch and the nearest imprint in one matrix.
-    fn differences(&self, touch: &Imprint, nearest: &Nearest) -> String {
-        let dead = self.namer.noise.as_ref().and_then(Noise::dead);
-        let sign = |column, row| {
-            let is = |imprint: &Imprint| imprint.get(column, row);
-            match (is(touch), is(&nearest.imprint)) {
-                _ if dead.is_some_and(is) => 'x',
-                (true, true) => '#',
-                (true, false) => '+',
-                (false, true) => '-',
-                (false, false) => '.',
+    /// Draws the touch and what the fitted shape leaves, or the nearest imprint if nothing was fitted, in one matrix;
+    /// with a pose, also the outline of the fitted shape. Empty if there is nothing to see beside the touch.
+    fn drawn(&self, touch: &Imprint) -> String {
+        let (answer, charset) = (&self.answer, Charset::current());
+        let mut text = String::new();
+        let (other, what, outlined) = match (&answer.fit, &answer.nearest) {
+            (Some(fit), _) => {
+                let outlined = self.namer.asks_pose.then_some(&fit.source);
+                (&fit.imprint, "fitted shape", outlined)
             }
+            (None, Some(nearest)) if nearest.distance > 0 => {
+                let (name, distance) = (self.name(nearest.shape), differing(nearest.distance));
+                text = charset.lines(&format!("nearest: {name}, {distance}\n"));
+                (&nearest.imprint, "nearest imprint", None)
+            }
+            _ => return text,
         };
-        let (name, distance) = (self.name(nearest.shape), differing(nearest.distance));
-        let mut text = format!("nearest: {name}, {distance}\n");
-        for row in 0..touch.rows() {
-            text += "  ";
-            text.extend((0..touch.columns()).map(|column| sign(column, row)));
-            text.push('\n');
+        let is_dead = |column, row| self.dead.is_some_and(|dead| dead.get(column, row));
+        let (full, empty) = charset.taxels();
+        let taxel = |column, row| match (touch.get(column, row), other.get(column, row)) {
+            _ if is_dead(column, row) => "x ",
+            (true, true) => full,
+            (true, false) => "+ ",
+            (false, true) => "- ",
+            (false, false) => empty,
+        };
+        let row = |row| (0..touch.columns()).flat_map(move |column| taxel(column, row).chars());
+        let taxels: Vec<Vec<char>> = (0..touch.rows()).map(|own| row(own).collect()).collect();
+        let is_mark = |sign: &char| ['x', '+', '-'].contains(sign);
+        let is_marked = taxels.iter().flatten().any(is_mark);
+        if outlined.is_none() && !is_marked {
+            return text;
         }
-        text += "  # both   + only in the touch   - only in the nearest imprint";
-        text + if dead.is_some() { "   x dead\n" } else { "\n" }
+        let mut rows = taxels.clone();
+        if let Some(source) = outlined {
+            let (columns, lines) = (u16::from(touch.columns()), u16::from(touch.rows()));
+            let mut outline = Outline(DotCanvas::new(2 * columns, lines));
+            source.draw(&mut outline);
+            draw_over(&mut rows, &outline.0, charset);
+        }
+        for (mut row, taxels) in rows.into_iter().zip(taxels) {
+            let marks = row
+                .iter_mut()
+                .zip(&taxels)
+                .filter(|(_, taxel)| is_mark(taxel));
+            marks.for_each(|(sign, &mark)| *sign = mark);
+            text += &format!("  {}\n", row.iter().collect::<String>().trim_end());
+        }
+        if is_marked {
+            let both = &full[..full.len() / 2];
+            text += &format!("  {both} both   + only in the touch   - only in the {what}");
+            text += if self.dead.is_some() {
+                "   x dead\n"
+            } else {
+                "\n"
+            };
+        }
+        text
     }
 }
 
@@ -193,8 +246,6 @@ pub(crate) struct PoseReport {
     pub(crate) estimate: PoseEstimate,
     /// The top left corner of the imprint's box.
     pub(crate) corner: [f64; 2],
-    /// The pose nearest to the mean.
-    pub(crate) placed: Option<PlacedSource>,
     /// The side of a cell in mm, if lengths are given in mm too.
     pub(crate) pitch_mm: Option<f64>,
 }
@@ -226,40 +277,16 @@ impl PoseReport {
         }
     }
 
-    fn text(&self, touch: &Imprint) -> String {
+    fn text(&self) -> String {
         let estimate = &self.estimate;
         let mut text = format!("centre {} cells", value::pose_centre(estimate, 1.0));
         if let Some(pitch) = self.pitch_mm {
             text += &format!(" ({} mm)", value::pose_centre(estimate, pitch));
         }
-        text += &match &estimate.angle {
+        text + &match &estimate.angle {
             None => "; it looks the same at every angle\n".to_owned(),
             Some(angle) => format!("\n{}\n", angle_in_words(angle, estimate.poses)),
-        };
-        Charset::current().lines(&text) + &self.drawn(touch)
-    }
-
-    /// Draws the outline over the touch.
-    fn drawn(&self, touch: &Imprint) -> String {
-        let (columns, lines) = (u16::from(touch.columns()), u16::from(touch.rows()));
-        let mut outline = Outline {
-            canvas: DotCanvas::new(2 * columns, lines),
-            by: [0.0; 2],
-        };
-        if let Some(placed) = &self.placed {
-            outline.by = placed.by;
-            placed.source.draw(&mut outline);
         }
-        let (full, empty) = Charset::current().taxels();
-        let mut rows = Vec::new();
-        for row in 0..touch.rows() {
-            let taxel = |column| if touch.get(column, row) { full } else { empty };
-            let taxels = (0..touch.columns()).flat_map(|column| taxel(column).chars());
-            rows.push(taxels.collect::<Vec<char>>());
-        }
-        draw_over(&mut rows, &outline.canvas, Charset::current());
-        let line = |row: Vec<char>| format!("  {}\n", row.iter().collect::<String>().trim_end());
-        rows.into_iter().map(line).collect()
     }
 }
 
@@ -273,17 +300,13 @@ fn angle_in_words(angle: &AngleEstimate, poses: u64) -> String {
     format!("angle {mean}° ± {spread}°{repeats}; {arc}")
 }
 
-/// Draws an outline, moved by some cells. A taxel is two characters wide, so it has four dots in both directions.
-struct Outline {
-    canvas: DotCanvas,
-    by: [f64; 2],
-}
+/// Draws an outline. A taxel is two characters wide, so it has four dots in both directions.
+struct Outline(DotCanvas);
 
 impl Pen<f64> for Outline {
     fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
-        let [dx, dy] = self.by;
-        let place = |point: Point<f64>| (4.0 * (point.x + dx), 4.0 * (point.y + dy));
-        self.canvas.line(place(from), place(to));
+        let place = |point: Point<f64>| (4.0 * point.x, 4.0 * point.y);
+        self.0.line(place(from), place(to));
     }
 
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {

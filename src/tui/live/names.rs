@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use taxel_core::imprint::Imprint;
-use taxel_core::recognition::{Evidence, Model, Noise};
+use taxel_core::recognition::Model;
 use taxel_files::storage::ModelChoice;
 
 use crate::frames::WatchRequest;
+use crate::naming::{Terms, verdict};
 use crate::tui::app::change::inform;
 use crate::tui::app::state::App;
 use crate::tui::jobs::{Slot, answer};
@@ -14,14 +15,13 @@ use crate::tui::live::update;
 use crate::tui::live::view::Lines;
 use crate::tui::models;
 use crate::tui::widget::theme::Theme;
-use crate::verdict::verdict;
 
 /// The model that names imprints, and its last answer.
 #[derive(Clone, Debug)]
 pub struct ShapeNames {
     /// The model that was requested with the source; None if none was.
     asked: Option<ModelChoice>,
-    noise: Option<Noise>,
+    terms: Terms,
     /// None if imprints are not named.
     pub choice: Option<ModelChoice>,
     /// The model, or why it cannot be used; None while it is being trained or read.
@@ -38,10 +38,8 @@ struct NamedImprint {
 
 impl NamedImprint {
     /// A single touch is the evidence, because the frames of a source may show different shapes.
-    fn new(model: &Model, imprint: &Imprint, noise: Option<&Noise>) -> Self {
-        let touches = [*imprint];
-        let evidence = Evidence::of(&touches).under(noise);
-        let answer = model.recognise(evidence);
+    fn new(model: &Model, imprint: &Imprint, dead: Option<&Imprint>, terms: Terms) -> Self {
+        let answer = terms.answer(model, &[*imprint], dead);
         let name = |shape: usize| model.shapes()[shape].name.as_str();
         Self {
             imprint: *imprint,
@@ -59,19 +57,19 @@ impl ShapeNames {
     pub fn new(request: &WatchRequest) -> Self {
         Self {
             asked: request.model.clone(),
-            noise: request.noise(),
+            terms: request.terms,
             choice: request.model.clone(),
             model: None,
             answer: None,
         }
     }
 
-    /// Names an imprint, unless it is the one that was named last.
-    pub fn name(&mut self, imprint: Option<&Imprint>) {
+    /// Names an imprint, unless it is the one that was named last. `dead` has the cells without a value.
+    pub fn name(&mut self, imprint: Option<&Imprint>, dead: Option<&Imprint>) {
         let imprint = imprint.filter(|imprint| !imprint.is_empty());
         if let (Some(imprint), Some(Ok(model))) = (imprint, &self.model) {
             if self.answer.as_ref().map(|own| &own.imprint) != Some(imprint) {
-                self.answer = Some(NamedImprint::new(model, imprint, self.noise.as_ref()));
+                self.answer = Some(NamedImprint::new(model, imprint, dead, self.terms));
             }
         } else {
             self.answer = None;
@@ -104,7 +102,7 @@ impl ShapeNames {
         };
         let nearest = self.answer.as_ref().and_then(|own| own.nearest.clone());
         let name = choice.name();
-        let model = match self.noise {
+        let model = match self.terms.noise {
             Some(noise) => format!("{name}, noise {}", noise.flip()),
             None => name.to_owned(),
         };

@@ -178,8 +178,10 @@ impl Live {
     }
 
     pub fn name(&mut self) {
-        let imprint = self.reading.as_ref().and_then(|reading| reading.imprint);
-        self.names.name(imprint.as_ref());
+        let reading = self.reading.as_ref();
+        let dead = reading.map(|reading| reading.values.cells_where(f64::is_nan));
+        let imprint = reading.and_then(|reading| reading.imprint.as_ref());
+        self.names.name(imprint, dead.as_ref());
     }
 
     /// Returns the unit of the values, with a space before it; empty if it is not known.

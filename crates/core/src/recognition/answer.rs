@@ -39,7 +39,9 @@ named!(
 #[derive(Clone, Copy, Debug)]
 pub struct Evidence<'a> {
     touches: &'a [Imprint],
-    noise: Option<&'a Noise>,
+    noise: Noise,
+    /// Whether taxels are known to flip, as the noise says.
+    is_noisy: bool,
     /// A shape fits a touch if at most this many taxels differ. With None, 2 and one for every 20 taxels of the outline
     /// (CE of the main region); under a given noise at least as many as flip in 999 of 1,000 touches.
     pub tolerance: Option<u32>,
@@ -48,17 +50,14 @@ pub struct Evidence<'a> {
     pub reject_below: Option<f64>,
 }
 
-/// The probability of a flip under which shapes are ranked if no noise is given. A touch between the poses of a model
-/// differs in a few taxels from their imprints.
-const RANKING: Noise = Noise::of_flip(0.01);
-
 impl<'a> Evidence<'a> {
     /// Creates evidence from touches whose taxels do not fail; any probability is enough for an answer. Each imprint
     /// lies on the whole matrix of its sensor ([`Model::recognise`]).
     pub fn of(touches: &'a [Imprint]) -> Self {
         Self {
             touches,
-            noise: None,
+            noise: Noise::default(),
+            is_noisy: false,
             tolerance: None,
             reject_below: None,
         }
@@ -67,8 +66,20 @@ impl<'a> Evidence<'a> {
     /// Assumes that taxels fail as the noise says. Without any flips, only the imprints of the model's own poses count,
     /// and nothing is fitted. None leaves the evidence as it is.
     #[must_use]
-    pub fn under(mut self, noise: impl Into<Option<&'a Noise>>) -> Self {
-        self.noise = noise.into().or(self.noise);
+    pub fn under<'n>(mut self, noise: impl Into<Option<&'n Noise>>) -> Self {
+        if let Some(noise) = noise.into() {
+            (self.noise, self.is_noisy) = (*noise, true);
+        }
+        self
+    }
+
+    /// Leaves the active taxels of `dead` out, in place of those of the noise: they are stuck on or off, or there is no
+    /// taxel. None leaves the evidence as it is.
+    #[must_use]
+    pub fn without<'d>(mut self, dead: impl Into<Option<&'d Imprint>>) -> Self {
+        if let Some(dead) = dead.into() {
+            self.noise = self.noise.with_dead(*dead);
+        }
         self
     }
 
@@ -78,7 +89,7 @@ impl<'a> Evidence<'a> {
             let regions = regions(touch);
             let main = main_region(&regions).map(|main| Description::of(&regions[main]).ce);
             let usual = 2 + main.unwrap_or_default() / 20;
-            let flips = self.noise.map(|noise| noise.most_flips(touch.size()));
+            let flips = self.is_noisy.then(|| self.noise.most_flips(touch.size()));
             usual.max(flips.unwrap_or_default())
         })
     }
@@ -135,7 +146,7 @@ impl Model {
     /// only about those of the model. Under a noise of 0, only imprints that the model holds are named, by their counts.
     ///
     /// Without any touch, the answer is the prior. If a noise is given, no answer is certain, since any shape may leave
-    /// any imprint.
+    /// any imprint; nor if taxels are dead.
     ///
     /// Touches are imprints on the whole matrix of their sensor, which may be of another size than the model's. One
     /// that is cropped to its taxels reaches the rim, so it may be cut off, and the answer is not certain
@@ -160,7 +171,7 @@ impl Model {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn recognise(&self, evidence: Evidence<'_>) -> Answer {
-        let (noise, touches) = (evidence.noise.unwrap_or(&RANKING), evidence.touches);
+        let (noise, touches) = (&evidence.noise, evidence.touches);
         let may_flip = noise.flip() > 0.0;
         let (posterior, method, mut nearest) = match noise.dead() {
             None if !may_flip => (self.possible(touches), SearchMethod::Exact, None),
@@ -177,11 +188,11 @@ impl Model {
         } else {
             (equals, None)
         };
-        let alone = match evidence.noise {
-            None => self.possible(touches).only(),
-            // A taxel that may flip makes every shape possible.
-            Some(noise) if noise.flip() > 0.0 => None,
-            Some(_) => posterior.only(),
+        let alone = match may_flip {
+            false => posterior.only(),
+            // A taxel that is dead or may flip makes every shape possible.
+            true if evidence.is_noisy || noise.dead().is_some() => None,
+            true => self.possible(touches).only(),
         };
         let is_alone = alone.is_some() && alone == equals.first().copied();
         let at_rim = (touches.iter()).any(|touch| may_be_cut_off(touch, noise.dead()));

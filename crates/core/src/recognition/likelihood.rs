@@ -286,6 +286,14 @@ impl NoiseError {
     }
 }
 
+impl Default for Noise {
+    /// One taxel of a hundred: under this noise shapes are ranked if none is given, because a touch between the poses
+    /// of a model differs in a few taxels from their imprints.
+    fn default() -> Self {
+        Self::of_flip(0.01)
+    }
+}
+
 impl Noise {
     /// Creates a noise in which every taxel flips with this probability.
     ///
@@ -318,7 +326,7 @@ impl Noise {
     }
 
     /// Creates a noise without dead taxels; the probability is from 0 to below ½.
-    pub(super) const fn of_flip(flip: f64) -> Self {
+    const fn of_flip(flip: f64) -> Self {
         Self { flip, dead: None }
     }
 
