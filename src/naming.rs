@@ -25,6 +25,16 @@ impl Terms {
         (evidence.tolerance, evidence.reject_below) = (self.tolerance, self.reject_below);
         model.recognise(evidence)
     }
+
+    /// The noise and the tolerance, if any is set: `noise 0.02, tolerance 3`.
+    pub(crate) fn in_words(&self) -> Option<String> {
+        let noise = self
+            .noise
+            .map(|noise| format!("noise {}", short(noise.flip())));
+        let tolerance = self.tolerance.map(|taxels| format!("tolerance {taxels}"));
+        let set: Vec<String> = noise.into_iter().chain(tolerance).collect();
+        (!set.is_empty()).then(|| set.join(", "))
+    }
 }
 
 /// The answer: the shape, its probability and how well it fits, or why there is no shape.

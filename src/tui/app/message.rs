@@ -109,6 +109,8 @@ impl Message {
 pub enum Layer {
     Outline,
     Rectangle,
+    /// The outline of the shape that was fitted to the imprint.
+    Fit,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

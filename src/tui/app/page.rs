@@ -9,7 +9,7 @@ use std::borrow::Cow;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use taxel_core::imprint::Imprint;
-use taxel_core::recognition::PlacedSource;
+use taxel_core::source::Source;
 
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
@@ -37,12 +37,6 @@ pub enum Wheel {
     /// Where only the chosen item is visible: more would skip the items between.
     Step = 1,
     Rows = 3,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-pub struct PoseLayer<'a> {
-    pub sources: &'a [PlacedSource],
-    pub shown: Option<bool>,
 }
 
 pub type Act = Box<dyn FnOnce(&mut App)>;
@@ -169,10 +163,9 @@ pub trait Page: Any {
         None
     }
 
-    /// Returns shapes in poses that may have left the imprint on the matrix, to be drawn over it. There are none by
-    /// default.
-    fn poses(&self) -> PoseLayer<'_> {
-        PoseLayer::default()
+    /// Returns the shape that fits the imprint on the matrix, to be drawn over it. There is none by default.
+    fn fitted(&self) -> Option<&Source> {
+        None
     }
 
     fn leaves_matrix(&self) -> bool {

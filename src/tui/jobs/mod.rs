@@ -56,7 +56,6 @@ pub enum Slot {
     Measure,
     Angles,
     Model,
-    Poses,
     Names,
 }
 

@@ -234,7 +234,7 @@ pub static PLACES: &[KeyPlace] = &[
         ("oO", &[&NEXT_MODEL, &PREVIOUS_MODEL], "other model", "next, previous model: built in, then your own"),
         ("v", &[&CONFUSION], "confusion", "which shapes are confused with which"),
         ("i", &[&PANEL], "answer", "on a narrow screen: the answer or the matrix"),
-        ("P", &[&POSES], "", "outlines of the likeliest pose and of others"),
+        ("P", &[&POSES], "", "the outline of the fitted shape"),
         ("<Enter>", &[&ACCEPT], "", "train the model after a stop"),
         ("<Esc>r<C-g>q", &[&CANCEL], "close", "stop training; back to the descriptors"),
     ]),

@@ -21,6 +21,7 @@ use crate::tui::keys::key::Arrow;
 use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::state::Live;
 use crate::tui::live::trend;
+use crate::tui::recognise::panel::legend;
 use crate::tui::widget::theme::{ColorDepth, Palette, Role, Theme, Tone};
 use crate::tui::widget::write::{below, right_of};
 
@@ -51,16 +52,24 @@ pub(super) struct HeatMap<'a> {
     reading: &'a LiveReading,
     layer: HeatLayer,
     range: (f64, f64),
+    /// What a fitted shape leaves: taxels that differ are marked on the imprint.
+    fitted: Option<&'a Imprint>,
     grid: Grid,
 }
 
 impl<'a> HeatMap<'a> {
-    pub(super) fn of(live: &Live, reading: &'a LiveReading, theme: &'a Theme, area: Rect) -> Self {
+    pub(super) fn of(
+        live: &'a Live,
+        reading: &'a LiveReading,
+        theme: &'a Theme,
+        area: Rect,
+    ) -> Self {
         Self {
             theme,
             reading,
             layer: live.layer,
             range: live.ends(),
+            fitted: live.names.fitted(),
             grid: grid(area, &reading.values, live.numbers, live.looked_at(reading)),
         }
     }
@@ -69,7 +78,12 @@ impl<'a> HeatMap<'a> {
     pub(super) fn legend(&self) -> Option<String> {
         let marked = match (self.layer, self.grid.size) {
             (_, CellSize::Number) => "active taxel",
-            (HeatLayer::Imprint, _) => return None,
+            (HeatLayer::Imprint, CellSize::Half) => return None,
+            (HeatLayer::Imprint, _) => {
+                let fitted = self.fitted.zip(self.reading.imprint.as_ref());
+                let differing = fitted.filter(|(fitted, imprint)| fitted != imprint);
+                return differing.map(|(fitted, imprint)| legend(imprint, fitted));
+            }
             (_, CellSize::Half) => "near imprint",
             _ => "imprint edge",
         };
@@ -113,10 +127,14 @@ impl<'a> HeatMap<'a> {
         let share = self.share(column, row);
         let imprint = self.reading.imprint.as_ref();
         if let Some(imprint) = imprint.filter(|_| self.layer == HeatLayer::Imprint) {
-            let role = match (imprint.get(column, row), self.reading.main.get(column, row)) {
-                (true, true) => Role::Chosen,
-                (true, false) => Role::Active,
-                (false, _) => Role::Inactive,
+            let own = imprint.get(column, row);
+            let other = self.fitted.map_or(own, |fitted| fitted.get(column, row));
+            let role = match (own, other, self.reading.main.get(column, row)) {
+                (true, false, _) => Role::Surplus,
+                (false, true, _) => Role::Missing,
+                (true, _, true) => Role::Chosen,
+                (true, _, false) => Role::Active,
+                (false, ..) => Role::Inactive,
             };
             let [sign, fill] = self.theme.taxel(role);
             let signs = [if share.is_nan() { ' ' } else { sign }, fill];

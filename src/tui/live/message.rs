@@ -8,6 +8,7 @@ use taxel_files::acquire::FrameSource;
 use crate::cli::commands::frame_flags::WatchFlags;
 pub use crate::frames::WatchRequest;
 pub use crate::frames::recording::RecordedFrames;
+use crate::naming::Terms;
 use crate::tui::keys::key::Arrow;
 pub use crate::tui::live::feed::{FeedStatus, FrameBatch, SourceGaps, SourceState};
 
@@ -43,6 +44,7 @@ pub enum LiveMessage {
     Record,
     Mark,
     NameShape,
+    Terms(Terms),
 }
 
 /// What follows `:watch`: a source, whose name may contain spaces, then flags as on the command line:

@@ -3,16 +3,17 @@
 use std::sync::Arc;
 
 use taxel_core::imprint::Imprint;
+use taxel_core::parameter::number::differing;
 use taxel_core::recognition::Model;
 use taxel_files::storage::ModelChoice;
 
 use crate::frames::WatchRequest;
 use crate::naming::{Terms, verdict};
-use crate::tui::app::change::inform;
+use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::state::App;
 use crate::tui::jobs::{Slot, answer};
 use crate::tui::live::update;
-use crate::tui::live::view::Lines;
+use crate::tui::live::view::{Lines, SHAPE};
 use crate::tui::models;
 use crate::tui::widget::theme::Theme;
 
@@ -21,7 +22,7 @@ use crate::tui::widget::theme::Theme;
 pub struct ShapeNames {
     /// The model that was requested with the source; None if none was.
     asked: Option<ModelChoice>,
-    terms: Terms,
+    pub terms: Terms,
     /// None if imprints are not named.
     pub choice: Option<ModelChoice>,
     /// The model, or why it cannot be used; None while it is being trained or read.
@@ -34,6 +35,8 @@ struct NamedImprint {
     imprint: Imprint,
     shape: String,
     nearest: Option<String>,
+    /// What the shape of the answer leaves in the pose that fits.
+    fitted: Option<Imprint>,
 }
 
 impl NamedImprint {
@@ -41,14 +44,15 @@ impl NamedImprint {
     fn new(model: &Model, imprint: &Imprint, dead: Option<&Imprint>, terms: Terms) -> Self {
         let answer = terms.answer(model, &[*imprint], dead);
         let name = |shape: usize| model.shapes()[shape].name.as_str();
+        let nearest = answer.nearest.as_ref();
+        // The verdict says how many taxels differ from a fit.
+        let nearest = nearest.filter(|own| own.distance > 0 && answer.fit.is_none());
         Self {
             imprint: *imprint,
             shape: verdict(&answer, model),
-            nearest: answer.nearest.map(|nearest| match nearest.distance {
-                0 => format!("{}, the same", name(nearest.shape)),
-                1 => format!("{}, 1 taxel differs", name(nearest.shape)),
-                taxels => format!("{}, {taxels} taxels differ", name(nearest.shape)),
-            }),
+            nearest: nearest
+                .map(|nearest| format!("{}, {}", name(nearest.shape), differing(nearest.distance))),
+            fitted: answer.fit.map(|fit| fit.imprint),
         }
     }
 }
@@ -87,30 +91,30 @@ impl ShapeNames {
         sets.into_iter().skip_while(|set| set != chosen).nth(1)
     }
 
-    /// Returns the lines about the shape, the nearest imprint, and the model with its noise; none if imprints are not
-    /// named. There is no name where nothing is active.
+    /// Returns the imprint of the shape that was fitted; None if none was.
+    pub fn fitted(&self) -> Option<&Imprint> {
+        self.answer.as_ref()?.fitted.as_ref()
+    }
+
+    /// Returns the lines about the shape, the nearest imprint if no shape was fitted, and the model with its terms; none
+    /// if imprints are not named. There is no name where nothing is active.
     pub fn lines(&self, any: bool, theme: &Theme) -> Lines {
         let Some(choice) = &self.choice else {
             return Vec::new();
         };
-        let none = || theme.none().to_owned();
         let shape = match (&self.model, &self.answer) {
             (Some(Err(reason)), _) => format!("! {reason}"),
             (_, Some(answer)) => answer.shape.clone(),
             (None, _) if any => "training or reading the model".to_owned(),
-            _ => none(),
+            _ => theme.none().to_owned(),
         };
+        let mut lines = vec![(SHAPE, shape)];
         let nearest = self.answer.as_ref().and_then(|own| own.nearest.clone());
-        let name = choice.name();
-        let model = match self.terms.noise {
-            Some(noise) => format!("{name}, noise {}", noise.flip()),
-            None => name.to_owned(),
-        };
-        vec![
-            ("shape", shape),
-            ("nearest", nearest.unwrap_or_else(none)),
-            ("model", model),
-        ]
+        lines.extend(nearest.map(|nearest| ("nearest", nearest)));
+        let terms = self.terms.in_words().map(|terms| format!(", {terms}"));
+        let terms = terms.unwrap_or_default();
+        lines.push(("model", format!("{}{terms}", choice.name())));
+        lines
     }
 }
 
@@ -133,6 +137,15 @@ pub(super) fn name_by(app: &mut App, choice: Option<ModelChoice>) {
             }
         })
     });
+}
+
+/// Names the imprints of the source on these terms.
+pub(super) fn name_on(app: &mut App, terms: Terms) {
+    let Some(page) = update::page(app) else {
+        return refuse(app, update::NO_SOURCE);
+    };
+    (page.names.terms, page.names.answer) = (terms, None);
+    page.name();
 }
 
 /// Names the imprints of the source by the next model, which may be one of the user's own.

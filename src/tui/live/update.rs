@@ -37,6 +37,7 @@ pub fn act(app: &mut App, asked: &LiveMessage) {
         LiveMessage::Open => open(app),
         LiveMessage::AtLeast(rule) => set_threshold(app, *rule),
         LiveMessage::Size(size) => watch_with(app, *size),
+        LiveMessage::Terms(terms) => names::name_on(app, *terms),
         _ => {}
     }
 }
@@ -313,7 +314,8 @@ fn report(app: &mut App, number: u64, change: impl FnOnce(&mut Live)) {
     }
 }
 
-const NO_SOURCE: &str = "no source yet: ':watch SOURCE' watches a sensor or plays a recording";
+pub(super) const NO_SOURCE: &str =
+    "no source yet: ':watch SOURCE' watches a sensor or plays a recording";
 
 const OPEN_ALREADY: &str = "this is the watched source; ':watch SOURCE' watches another one";
 

@@ -36,6 +36,9 @@ use crate::tui::widget::write;
 
 const LABEL: usize = 11;
 
+/// The label of the answer of recognition.
+pub(super) const SHAPE: &str = "shape";
+
 /// Lines of the panel, each with its label.
 pub(super) type Lines = Vec<(&'static str, String)>;
 
@@ -93,6 +96,7 @@ impl Page for Live {
             map.draw(buffer);
         }
         let lines = lines(self, theme, keymap, map.as_ref().and_then(HeatMap::legend));
+        let lines = with_whole_answer(lines, theme, panes.panel.width);
         let mut panel = panes.panel;
         if let Some((plot, rest)) = panes.plot(lines.len()).filter(|_| map.is_some()) {
             trend::draw(self, theme, buffer, plot);
@@ -313,6 +317,19 @@ fn dropped(live: &Live) -> String {
         text += &format!(", the last: {sample}{reason}");
     }
     text
+}
+
+/// Breaks the answer of recognition into lines that fit beside their label: its end says how well the shape fits.
+fn with_whole_answer(mut lines: Lines, theme: &Theme, width: u16) -> Lines {
+    let room = usize::from(width).saturating_sub(LABEL);
+    if let Some(at) = lines.iter().position(|(label, _)| *label == SHAPE) {
+        let answer = theme.text(&lines[at].1).into_owned();
+        let parts = write::broken(&answer, room).into_iter();
+        let labels = std::iter::once(SHAPE).chain(std::iter::repeat(""));
+        let parts = labels.zip(parts.map(str::to_owned));
+        lines.splice(at..=at, parts);
+    }
+    lines
 }
 
 /// Draws the lines from the top; lines that do not fit into the area are left out.

@@ -1,4 +1,5 @@
-//! Layers over the taxels: the true outline of the source, and the circumscribed rectangle with CG and CD.
+//! Layers over the taxels: the true outline of the source, that of the shape that was fitted to the imprint, and the
+//! circumscribed rectangle with CG and CD.
 //!
 //! Lines are drawn in dots finer than characters. Over an active taxel they are reversed, so that the taxel differs
 //! from an inactive one even without colour. A number of two digits is never covered in part: lines leave it out, and
@@ -28,6 +29,7 @@ const INSIDE: f64 = 0.25;
 pub struct Layers {
     pub outline: Option<bool>,
     pub rectangle: Option<bool>,
+    pub fit: Option<bool>,
 }
 
 impl Layers {
@@ -45,8 +47,6 @@ pub fn draw(app: &App, grid: &Grid, buffer: &mut Buffer) {
     let mut dots = Dots {
         grid,
         canvas: DotCanvas::new(columns, lines),
-        by: [0.0; 2],
-        faint: false,
     };
     if let Some(region) = &region {
         dots.rectangle(region);
@@ -56,11 +56,9 @@ pub fn draw(app: &App, grid: &Grid, buffer: &mut Buffer) {
     {
         source.draw(&mut dots);
     }
-    let poses = app.pane().map(Page::poses).unwrap_or_default();
-    let poses = poses.sources.iter().filter(|_| shown(poses.shown));
-    for (index, placed) in poses.enumerate() {
-        (dots.by, dots.faint) = (placed.by, index > 0);
-        placed.source.draw(&mut dots);
+    let fitted = app.pane().and_then(Page::fitted);
+    if let Some(source) = fitted.filter(|_| shown(app.layers.fit)) {
+        source.draw(&mut dots);
     }
     let is_number = |cell: &Cell| grid.size.is_large() && is_digit(cell);
     for (column, row, shape) in dots.canvas.characters() {
@@ -77,7 +75,6 @@ pub fn draw(app: &App, grid: &Grid, buffer: &mut Buffer) {
         cell.reset();
         cell.set_char(glyph(theme, shape)).set_style(style);
     }
-    dots.by = [0.0; 2];
     let [cg, cd] = region.map_or([None; 2], |region| {
         [region.cg(), region.cd()].map(|at| dots.character(at.x, at.y))
     });
@@ -111,9 +108,6 @@ fn is_digit(cell: &Cell) -> bool {
 struct Dots<'a> {
     grid: &'a Grid,
     canvas: DotCanvas,
-    /// What is drawn is moved by this many cells.
-    by: [f64; 2],
-    faint: bool,
 }
 
 impl Dots<'_> {
@@ -125,12 +119,9 @@ impl Dots<'_> {
     }
 
     fn position(&self, x: f64, y: f64) -> DotPosition {
-        let ((across, down), [dx, dy]) = (self.scale(), self.by);
+        let (across, down) = self.scale();
         let (left, top) = (self.grid.columns.first, self.grid.rows.first);
-        (
-            (x + dx - f64::from(left)) * across,
-            (y + dy - f64::from(top)) * down,
-        )
+        ((x - f64::from(left)) * across, (y - f64::from(top)) * down)
     }
 
     /// Returns the character at a point of the visible taxels.
@@ -159,15 +150,6 @@ impl Dots<'_> {
             self.canvas.dashed((x, top), (x, bottom), shown);
         }
     }
-
-    fn stroke(&mut self, from: DotPosition, to: DotPosition) {
-        let faint = self.faint;
-        // Which dots are set depends on their place, so that short pieces of a curve are as faint as a long line.
-        let start = from.0 + from.1;
-        self.canvas.dashed(from, to, |step| {
-            !faint || (start + f64::from(step)).rem_euclid(3.0) < 1.0
-        });
-    }
 }
 
 impl Pen<f64> for Dots<'_> {
@@ -178,7 +160,7 @@ impl Pen<f64> for Dots<'_> {
         if length > 0.0 {
             let aside = (-dy / length * INSIDE, dx / length * INSIDE);
             let moved = |place: DotPosition| (place.0 + aside.0, place.1 + aside.1);
-            self.stroke(moved(from), moved(to));
+            self.canvas.line(moved(from), moved(to));
         }
     }
 
@@ -200,7 +182,7 @@ impl Pen<f64> for Dots<'_> {
         };
         let places: Vec<DotPosition> = (0..=PIECES).map(at).collect();
         for pair in places.windows(2) {
-            self.stroke(pair[0], pair[1]);
+            self.canvas.line(pair[0], pair[1]);
         }
     }
 }

@@ -301,6 +301,14 @@ fn switch_layer(app: &mut App, layer: Layer) {
             no_region.then(|| ", once there is a region".to_owned()),
             &mut app.layers.rectangle,
         ),
+        Layer::Fit => (
+            "the outline of the fitted shape",
+            app.recognition
+                .fit
+                .is_none()
+                .then(|| ", once there is one".to_owned()),
+            &mut app.layers.fit,
+        ),
     };
     let show = !Layers::shown(*shown, &grid);
     *shown = Some(show);

@@ -17,12 +17,14 @@ use clap::{CommandFactory, FromArgMatches, Parser};
 use taxel_core::figure::FigureKind;
 use taxel_core::frame::{FrameSize, MAX_FRAME_SIDE, Rule};
 use taxel_core::pose::{Anchor, GivenRanges, PoseGrid, default_ranges};
+use taxel_core::recognition::Noise;
 use taxel_core::source::Source;
 use taxel_files::formats::Name;
 use taxel_files::storage::ModelChoice;
 
 use crate::cli::arguments::flags::{one_of, parse_number};
 use crate::cli::arguments::parameters::{FigureFlags, RangeFlags, SensorFlags};
+use crate::naming::Terms;
 use crate::tui::app::document::Document;
 use crate::tui::app::message::{Message, Purpose};
 use crate::tui::app::page::Page;
@@ -33,6 +35,7 @@ use crate::tui::keys::action::Action;
 use crate::tui::keys::default_keys::PLACES;
 use crate::tui::keys::keymap::Context;
 use crate::tui::live::message::{LiveMessage, NamedSource};
+use crate::tui::live::state::Live;
 use crate::tui::recognise::RecogniseMessage;
 
 #[derive(Debug, Parser)]
@@ -77,6 +80,11 @@ enum Colon {
         #[arg(value_parser = parse_number, allow_hyphen_values = true)]
         dy: f64,
     },
+    /// how often taxels flip; 0: trained poses only; auto: usual
+    Noise {
+        #[arg(value_name = "E", value_parser = noise)]
+        noise: Option<GivenNoise>,
+    },
     /// open a shape or an imprint from a file
     Open {
         #[arg(required = true)]
@@ -108,6 +116,8 @@ enum Colon {
         #[arg(value_name = "COLUMNSxROWS", value_parser = sides)]
         size: FrameSize,
     },
+    /// the most taxels that may differ from a shape; auto if left out
+    Tolerance { taxels: Option<u32> },
     /// turn the shape right; negative degrees: left
     Turn {
         #[arg(value_parser = parse_number, allow_hyphen_values = true)]
@@ -127,8 +137,27 @@ enum Colon {
 }
 
 /// The commands that mean something while a sensor is watched, and those that mean nothing elsewhere.
-const ON_LIVE: [&str; 5] = ["at-least", "size", "watch", "quit", "quit!"];
+const ON_LIVE: [&str; 7] = [
+    "at-least",
+    "noise",
+    "size",
+    "tolerance",
+    "watch",
+    "quit",
+    "quit!",
+];
 const ONLY_ON_LIVE: [&str; 2] = ["at-least", "size"];
+
+/// None if it is not known.
+type GivenNoise = Option<Noise>;
+
+fn noise(text: &str) -> Result<GivenNoise, String> {
+    if text == "auto" {
+        return Ok(None);
+    }
+    let noise = Noise::new(parse_number(text)?);
+    noise.map(Some).map_err(|error| error.expected().to_owned())
+}
 
 fn sides(text: &str) -> Result<FrameSize, String> {
     let sides = text.split_once(['x', '×']);
@@ -240,6 +269,7 @@ impl Colon {
             }
             Self::Load { name } => shape(Purpose::Load, &name, Message::Load)?,
             Self::Move { dx, dy } => Message::Move(dx, dy),
+            Self::Noise { noise } => named_on(app, |terms| terms.noise = noise.flatten()),
             Self::Open { file } => Message::OpenFile(file.join(" ")),
             Self::Picture { name } => shape(Purpose::Picture, &name, Message::Picture)?,
             Self::Quit => Message::Quit,
@@ -267,6 +297,7 @@ impl Colon {
                 Message::Become(Box::new(document.on(sensor)))
             }
             Self::Size { size } => Message::Live(LiveMessage::Size(size)),
+            Self::Tolerance { taxels } => named_on(app, |terms| terms.tolerance = taxels),
             Self::Turn { degrees } => Message::Turn(degrees),
             Self::Watch { source } if source.name.is_empty() => Message::Live(LiveMessage::Open),
             Self::Watch { source } => Message::Live(LiveMessage::Source(Box::new(source))),
@@ -280,6 +311,17 @@ fn shape(purpose: Purpose, words: &[String], otherwise: Message) -> Result<Messa
         return Ok(otherwise);
     }
     Ok(Message::Named(purpose, name_of(words)?.to_string()))
+}
+
+/// Names touches on other terms, on the page that is open.
+fn named_on(app: &App, change: impl FnOnce(&mut Terms)) -> Message {
+    let live = app.page::<Live>();
+    let mut terms = live.map_or(app.recognition.terms, |page| page.names.terms);
+    change(&mut terms);
+    match live {
+        Some(_) => Message::Live(LiveMessage::Terms(terms)),
+        None => Message::Recognise(RecogniseMessage::Terms(terms)),
+    }
 }
 
 fn name_of(words: &[String]) -> Result<Name, String> {

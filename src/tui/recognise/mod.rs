@@ -2,17 +2,19 @@
 //!
 //! ```text
 //! page        the page beside the matrix: the set and its model, the touches, what keys do
-//! trained     a model, how well it tells its shapes apart, a random touch, the poses of a touch
+//! trained     a model, how well it tells its shapes apart, a random touch
 //! panel       how the page is drawn: what the model says about the touches, in words
 //! confusion   which shapes are taken for which, with an imprint that two share
 //! ```
 
 pub(crate) mod confusion;
 pub(crate) mod page;
-mod panel;
+pub(crate) mod panel;
 pub(crate) mod trained;
 
 use taxel_files::storage::ModelChoice;
+
+use crate::naming::Terms;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecogniseMessage {
@@ -23,9 +25,9 @@ pub enum RecogniseMessage {
     Touch,
     Keep,
     Forget,
-    Poses,
     Confusion,
     Seed(u64),
+    Terms(Terms),
     /// Selects a cell of the confusion matrix: row, column.
     SelectCell(usize, usize),
 }

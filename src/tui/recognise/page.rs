@@ -6,11 +6,12 @@ use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
 use ratatui::layout::{Position, Rect};
 use taxel_core::imprint::Imprint;
-use taxel_core::recognition::{Answer, Evidence};
+use taxel_core::recognition::{Answer, Fit, Nearest};
 use taxel_core::sensor::MatrixSize;
 use taxel_files::formats::Name;
 use taxel_files::storage::{ModelChoice, RememberedFile};
 
+use crate::naming::Terms;
 use crate::tui::app::change::{begin_drawn, inform, refuse};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Canvas, Flow, Page, Place};
@@ -19,10 +20,9 @@ use crate::tui::jobs::{self, answer};
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::Context;
 use crate::tui::matrix;
-use crate::tui::matrix::layers::Layers;
 use crate::tui::recognise::RecogniseMessage;
 use crate::tui::recognise::confusion::Confusion;
-use crate::tui::recognise::trained::{Found, PoseSearch, TrainedModel};
+use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::write::other;
 
 pub(crate) struct Recognition {
@@ -39,12 +39,11 @@ pub(crate) struct Recognition {
     pub(super) present: Imprint,
     /// The threshold at which a shape touched the matrix.
     threshold: Option<f64>,
+    pub(crate) terms: Terms,
     /// The answer about all touches.
     pub(super) answer: Option<Answer>,
-    /// The search for the touch on the matrix, and its result.
-    search: Option<(PoseSearch, Option<Found>)>,
-    /// Whether outlines of poses are shown; None shows them if taxels are large.
-    pub(super) outlines: Option<bool>,
+    /// The shape of the answer, fitted to the touch on the matrix.
+    pub(crate) fit: Option<Fit>,
     random: Pcg64,
 }
 
@@ -72,9 +71,9 @@ impl Recognition {
             kept: Vec::new(),
             present: Imprint::empty(MatrixSize::SMALLEST),
             threshold: None,
+            terms: Terms::default(),
             answer: None,
-            search: None,
-            outlines: None,
+            fit: None,
             random: Pcg64::seed_from_u64(seed),
         }
     }
@@ -113,23 +112,28 @@ impl Recognition {
         self.threshold.filter(|&threshold| threshold != trained)
     }
 
-    pub(super) fn found(&self) -> Option<&Found> {
-        self.search.as_ref()?.1.as_ref()
+    /// The nearest imprint of the model, if it is another one and no shape was fitted to the touch on the matrix.
+    pub(super) fn nearest(&self) -> Option<&Nearest> {
+        let answer = self.answer.as_ref().filter(|answer| answer.fit.is_none())?;
+        // Of several touches, the nearest imprint may be that of another one.
+        let nearest = answer.nearest.as_ref().filter(|_| self.kept.is_empty());
+        nearest.filter(|nearest| nearest.distance > 0)
     }
 
     fn ask(&mut self) {
+        (self.answer, self.fit) = (None, None);
         let touches = self.touches();
-        let model = self.model().filter(|_| !touches.is_empty());
-        self.answer = model.map(|trained| trained.model.recognise(Evidence::of(&touches)));
-    }
-
-    fn needed_search(&self) -> Option<PoseSearch> {
-        let trained = Arc::clone(self.model()?);
-        (!self.present.is_empty()).then(|| PoseSearch {
-            trained,
-            imprint: self.present,
-            named: self.answer.as_ref().and_then(|answer| answer.shape),
-        })
+        let Some(trained) = self.model().filter(|_| !touches.is_empty()) else {
+            return;
+        };
+        let model = &trained.model;
+        let answer = self.terms.answer(model, &touches, None);
+        let fit = answer.fit.as_ref().and_then(|fit| match touches[..] {
+            [only] if only == self.present => Some(fit.clone()),
+            // Of several touches, the fit is to the one that differs most.
+            _ => model.fit(fit.shape, &self.present, None),
+        });
+        (self.answer, self.fit) = (Some(answer), fit);
     }
 }
 
@@ -155,30 +159,9 @@ pub(crate) fn stop_if_failed(app: &mut App) {
 
 /// Brings the page up to date: called after every change.
 pub(crate) fn follow(app: &mut App) {
-    if !is_open(app) {
-        return;
+    if is_open(app) {
+        show(app);
     }
-    show(app);
-    let page = &mut app.recognition;
-    let needed = page.needed_search();
-    if page.search.as_ref().map(|(search, _)| search) == needed.as_ref() {
-        return;
-    }
-    page.search = needed.clone().map(|search| (search, None));
-    let Some(search) = needed else {
-        return app.jobs.forget(jobs::Slot::Poses);
-    };
-    app.jobs.run(jobs::Slot::Poses, move |progress| {
-        let found = search.run(progress);
-        answer(move |app| {
-            if let Some(reason) = &found.refused {
-                refuse(app, reason.clone());
-            }
-            if let Some((_, result)) = &mut app.recognition.search {
-                *result = Some(found);
-            }
-        })
-    });
 }
 
 /// The page of recognition on the stack. Its state outlasts it, so the program keeps that.
@@ -274,12 +257,15 @@ fn carry_out(app: &mut App, asked: RecogniseMessage, is_open: bool) {
         RecogniseMessage::NextModel(_) => name_model(app),
         RecogniseMessage::Keep => keep(app),
         RecogniseMessage::Forget => forget(app),
-        RecogniseMessage::Touch | RecogniseMessage::Confusion | RecogniseMessage::Poses => {
+        RecogniseMessage::Terms(terms) => {
+            app.recognition.terms = terms;
+            app.recognition.ask();
+        }
+        RecogniseMessage::Touch | RecogniseMessage::Confusion => {
             let page = &mut app.recognition;
             match (page.model().cloned(), &mut page.preparing) {
                 (Some(trained), _) => match asked {
                     RecogniseMessage::Touch => touch(app, &trained),
-                    RecogniseMessage::Poses => show_poses(app),
                     _ => app.open(Confusion::new(trained)),
                 },
                 (None, Some(preparing)) if !preparing.stopping => {
@@ -381,27 +367,6 @@ fn take_model(app: &mut App, stored: Vec<Name>, trained: Result<Arc<TrainedModel
     }
 }
 
-/// Hides the outlines of poses if they are visible, otherwise shows them. At first the size of the taxels decides, so
-/// this depends on what is visible, not on the setting.
-fn show_poses(app: &mut App) {
-    let Some(grid) = app.grid() else { return };
-    show(app);
-    let page = &mut app.recognition;
-    let seen = Layers::shown(page.outlines, &grid);
-    page.outlines = Some(!seen);
-    match page.found() {
-        _ if seen => inform(app, "without poses"),
-        _ if page.present.is_empty() => refuse(app, "no pose to show: nothing is touched"),
-        None => inform(app, "the poses are still being searched for"),
-        Some(found) if found.poses.is_empty() => {
-            let none = "no pose to show: no shape of the model leaves this imprint";
-            let reason = found.refused.clone();
-            refuse(app, reason.unwrap_or_else(|| none.to_owned()));
-        }
-        Some(_) => inform(app, "the likeliest pose; others of the 95 % faintly"),
-    }
-}
-
 /// Puts a random touch onto the matrix and tells its shape. Kept touches are forgotten: they were of another shape, and
 /// the answer is about one shape only.
 fn touch(app: &mut App, trained: &TrainedModel) {
@@ -446,8 +411,6 @@ fn forget(app: &mut App) {
 }
 
 fn close(app: &mut App) {
-    app.jobs.forget(jobs::Slot::Poses);
-    app.recognition.search.take_if(|(_, found)| found.is_none());
     app.shows_panel = false;
     app.held = None;
 }

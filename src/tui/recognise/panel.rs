@@ -1,4 +1,4 @@
-//! The panel beside the matrix: the set, the shapes with bars, the nearest imprint, the pose, touches.
+//! The panel beside the matrix: the set, the answer, the shapes with bars, touches.
 //!
 //! ```text
 //! the model                   +--------------------------------------------+
@@ -6,13 +6,13 @@
 //!                             | grid: 0.01 cells, 1°; 25,200,000 touches   |
 //!                             | limit: error 33.0 %, certain 38.3 %        |
 //!                             |                                            |
-//! the answer in a word        | likely: hexagon                            |
+//! the answer                  | hexagon  71.0 %  2 taxels differ at 4.31,  |
+//!                             | 4.52, 17.2°                                |
+//! what differs                | + 1 surplus, - 1 missing                   |
 //! every shape it may be       | hexagon  ████████████████████       71.0 % |
 //!                             | octagon  ███████                    29.0 % |
 //!                             |                                            |
-//! where a touch is not known, | nearest: hexagon, 2 taxels differ          |
-//! what is most like it        | + surplus, - missing                       |
-//! where the shape lies        | centre 7.51 ± 0.08, 7.48 ± 0.11 cells      |
+//! other touches               | 1 touch kept; x forgets                    |
 //!                             +--------------------------------------------+
 //! ```
 
@@ -20,27 +20,31 @@ use ratatui::layout::{Position, Rect};
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::number::{differing, share, short};
 use taxel_core::pose::Axis;
-use taxel_core::recognition::{Answer, AnswerState, Nearest, PoseEstimate};
-use taxel_files::formats::value::{self, counted, decimal, grouped, percent};
+use taxel_core::recognition::AnswerState;
+use taxel_core::source::Source;
+use taxel_files::formats::value::{counted, decimal, percent};
 
+use crate::naming::verdict;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Place, PoseLayer};
+use crate::tui::app::page::{Canvas, Flow, Page, Place};
 use crate::tui::app::state::App;
 use crate::tui::explore::work::gauge;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::Context;
 use crate::tui::recognise::RecogniseMessage;
 use crate::tui::recognise::page::{Preparation, Recognition};
-use crate::tui::recognise::trained::{Found, TrainedModel};
+use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::theme::Role;
 use crate::tui::widget::write::{self, narrow};
 
 const PERCENT: usize = 9;
 const NAME: usize = 14;
 
-/// The lines below the list of shapes that are always left free, so that the list has the same length for nearly all
-/// touches.
-const BELOW: usize = 6;
+/// The least probability of a shape in the list.
+const LEAST: f64 = 0.001;
+
+/// The lines below the list of shapes that are left free for the kept touches.
+const BELOW: usize = 2;
 
 impl Page for Recognition {
     fn on(&mut self, _: &mut App, _: &Message) -> Flow {
@@ -72,6 +76,9 @@ impl Page for Recognition {
             }
             (None, Some(trained)) => {
                 panel.model(trained);
+                if let Some(terms) = self.terms.in_words() {
+                    panel.text(&terms, Role::Text);
+                }
                 if let Some(threshold) = self.other_threshold() {
                     let [own, here] = [trained.model.sensor().threshold(), threshold].map(short);
                     let text = format!("trained at threshold {own}; here it is {here}");
@@ -85,15 +92,13 @@ impl Page for Recognition {
     }
 
     fn compared_with(&self) -> Option<&Imprint> {
-        let nearest = self.found()?.nearest.as_ref()?;
-        (nearest.distance > 0).then_some(&nearest.imprint)
+        let fitted = self.fit.as_ref().map(|fit| &fit.imprint);
+        let nearest = || self.nearest().map(|nearest| &nearest.imprint);
+        fitted.or_else(nearest).filter(|&own| *own != self.present)
     }
 
-    fn poses(&self) -> PoseLayer<'_> {
-        PoseLayer {
-            sources: self.found().map_or(&[], |found| &found.poses),
-            shown: self.outlines,
-        }
+    fn fitted(&self) -> Option<&Source> {
+        self.fit.as_ref().map(|fit| &fit.source)
     }
 
     fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
@@ -132,17 +137,9 @@ impl Panel<'_> {
         }
     }
 
-    fn lines_of(&self, text: &str) -> usize {
-        write::broken(&self.canvas.theme.text(text), self.area.width.into()).len()
-    }
-
-    fn gap(&mut self) {
-        self.line += self.gap_lines();
-    }
-
     /// On a low screen, a line is worth more than a gap.
-    fn gap_lines(&self) -> usize {
-        usize::from(self.area.height >= 16)
+    fn gap(&mut self) {
+        self.line += usize::from(self.area.height >= 16);
     }
 
     fn key(&self, action: &'static action::Action) -> String {
@@ -186,24 +183,23 @@ impl Panel<'_> {
             limit += &format!(", certain {certain}");
         }
         self.text(&limit, Role::Quiet);
-        if let Some((unknown, tried)) = trained.unknown_between {
-            let text = format!(
-                "between the trained poses, {} of {} touches are unknown",
-                percent(share(unknown.into(), tried.into())),
-                grouped(tried)
-            );
-            self.text(&text, Role::Quiet);
-        }
     }
 
-    /// Lines about the touch take precedence over the list of shapes.
     fn answer(&mut self, page: &Recognition, trained: &TrainedModel) {
-        let mut below = Vec::new();
         if let Some(answer) = &page.answer {
-            let verdict = verdict(answer, page.touches().len(), trained);
-            self.text(&verdict, Role::Title);
-            if let Some(found) = page.found() {
-                below = details(&page.present, found, answer, trained);
+            self.text(&verdict(answer, &trained.model), Role::Title);
+            if answer.at_rim {
+                self.text("at the rim, perhaps cut off", Role::Text);
+            }
+            if let Some(nearest) = page.nearest() {
+                let (name, differ) = (trained.name(nearest.shape), differing(nearest.distance));
+                self.text(&format!("nearest: {name}, {differ}"), Role::Text);
+            }
+            if let Some(other) = page.compared_with() {
+                self.text(&legend(&page.present, other), Role::Quiet);
+            }
+            if answer.state == AnswerState::Unknown && !answer.ranking.is_empty() {
+                self.text("if it were one of them:", Role::Quiet);
             }
         } else {
             let touch = self.key(&action::RANDOM_TOUCH);
@@ -212,38 +208,35 @@ impl Panel<'_> {
             );
             self.text(&text, Role::Text);
         }
-        let kept = (!page.kept.is_empty()).then(|| {
-            let touches = counted(page.kept.len() as u64, "touch");
-            format!("{touches} kept; {} forgets", self.key(&action::FORGET))
-        });
-        let texts = below.iter().map(|(text, _)| text).chain(&kept);
-        let lines: usize = texts.map(|text| self.lines_of(text)).sum();
-        let lines = lines + (1 + usize::from(kept.is_some())) * self.gap_lines();
-        let room = usize::from(self.area.height).saturating_sub(self.line + lines.max(BELOW));
+        let room = usize::from(self.area.height).saturating_sub(self.line + BELOW);
         if let Some(answer) = &page.answer {
             self.ranking(&answer.ranking, trained, room.max(1));
         }
-        if !below.is_empty() {
+        if !page.kept.is_empty() {
+            let touches = counted(page.kept.len() as u64, "touch");
+            let text = format!("{touches} kept; {} forgets", self.key(&action::FORGET));
             self.gap();
-        }
-        for (text, role) in below {
-            self.text(&text, role);
-        }
-        if let Some(kept) = kept {
-            self.gap();
-            self.text(&kept, Role::Text);
+            self.text(&text, Role::Text);
         }
     }
 
     fn ranking(&mut self, ranking: &[(usize, f64)], trained: &TrainedModel, room: usize) {
         let names = ranking.iter().map(|&(shape, _)| trained.name(shape));
         let width = names.map(write::width).fold(0, usize::max).min(NAME);
+        let likely = ranking
+            .iter()
+            .filter(|(_, probability)| *probability >= LEAST);
+        let likely = likely.count();
         // If shapes are left out, the last line shows how many.
-        let room = (room - usize::from(ranking.len() > room)).max(1);
-        for &(shape, probability) in ranking.iter().take(room) {
+        let shown = if likely == ranking.len() && likely <= room {
+            likely
+        } else {
+            likely.clamp(1, room.max(2) - 1)
+        };
+        for &(shape, probability) in &ranking[..shown] {
             self.shape(trained.name(shape), width, probability);
         }
-        let rest = ranking.len().saturating_sub(room);
+        let rest = ranking.len() - shown;
         if rest > 0 {
             self.text(&format!("and {rest} more"), Role::Quiet);
         }
@@ -266,86 +259,15 @@ impl Panel<'_> {
     }
 }
 
-/// Returns the answer in a word, and the shapes that it names.
-fn verdict(answer: &Answer, touches: usize, trained: &TrainedModel) -> String {
-    let named = match answer.state {
-        AnswerState::Tied => &answer.tied[..],
-        _ => answer.shape.as_slice(),
-    };
-    let names: Vec<&str> = named.iter().map(|&shape| trained.name(shape)).collect();
-    let what = match (names.is_empty(), touches) {
-        (false, _) => names.join(", "),
-        (true, ..=1) => "no shape leaves this imprint".to_owned(),
-        (true, _) => "no shape leaves all of these".to_owned(),
-    };
-    let mut text = format!("{}: {what}", answer.state.name());
-    if answer.at_rim {
-        text += " (at the rim, perhaps cut off)";
-    }
-    text
-}
-
-/// Returns the lines about the touch on the matrix.
-fn details(
-    present: &Imprint,
-    found: &Found,
-    answer: &Answer,
-    trained: &TrainedModel,
-) -> Vec<(String, Role)> {
-    let mut lines = Vec::new();
-    match &found.nearest {
-        None => {
-            let text = "no imprint of the model fits the matrix".to_owned();
-            lines.push((text, Role::Text));
-        }
-        Some(nearest) if nearest.distance > 0 => {
-            let (name, differ) = (trained.name(nearest.shape), differing(nearest.distance));
-            lines.push((format!("nearest: {name}, {differ}"), Role::Text));
-            lines.push((legend(present, nearest), Role::Quiet));
-        }
-        Some(_) => {}
-    }
-    if let Some((shape, pose)) = &found.pose {
-        let mut centre = format!("centre {} cells", value::pose_centre(pose, 1.0));
-        // If shapes are tied, the pose is that of the first.
-        if answer.state == AnswerState::Tied || answer.shape != Some(*shape) {
-            centre = format!("{} {centre}", trained.name(*shape));
-        }
-        lines.push((centre, Role::Text));
-        lines.extend(angle(pose).map(|line| (line, Role::Text)));
-    }
-    lines
-}
-
-fn legend(present: &Imprint, nearest: &Nearest) -> String {
-    let differing = present.differing(&nearest.imprint);
-    let is_surplus = |&(column, row): &(u8, u8)| present.get(column, row);
-    let surplus = differing.active().filter(is_surplus).count();
-    let missing = differing.count() as usize - surplus;
+/// Says how many taxels have each mark of a comparison.
+pub(crate) fn legend(present: &Imprint, other: &Imprint) -> String {
+    let surplus = present.without(other).count();
+    let missing = other.without(present).count();
     match (surplus, missing) {
         (_, 0) => format!("+ {surplus} surplus"),
         (0, _) => format!("- {missing} missing"),
         _ => format!("+ {surplus} surplus, - {missing} missing"),
     }
-}
-
-/// Returns mean and spread of the angle, and how many poses leave the imprint.
-fn angle(pose: &PoseEstimate) -> [String; 2] {
-    let known = pose.angle.as_ref();
-    let known = known.and_then(|angle| Some((angle, angle.known()?)));
-    let Some((angle, (mean, spread))) = known else {
-        return ["any angle".to_owned(), counted(pose.poses, "pose")];
-    };
-    // A half is rounded up: symmetric shapes often have such a mean, and formatting alone rounds to even.
-    let (mean, spread) = (
-        decimal((mean + 0.5).floor(), 0),
-        value::pose_spread(spread, 1),
-    );
-    let repeats = value::pose_repeats(angle);
-    [
-        format!("angle {mean}° ± {spread}°{repeats}"),
-        value::pose_arc(angle, pose.poses),
-    ]
 }
 
 /// Returns the full columns of a bar; a value above 0 has at least one.
