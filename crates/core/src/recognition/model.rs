@@ -6,11 +6,12 @@ use std::sync::OnceLock;
 
 use crate::atlas::{ImprintKey, KeyRef, KeyTable};
 use crate::imprint::Imprint;
-use crate::parameter::number::{share, to_decimals};
+use crate::parameter::number::share;
 use crate::pose::{Anchor, Axis, MAX_POSES, Ranges};
 use crate::quote::shortened;
 use crate::recognition::fit::StartPoses;
 use crate::recognition::scan::KeyIndex;
+use crate::recognition::training::{CellPositions, GridSteps, Training};
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::sweep::{Shard, ShardOrderError};
@@ -132,18 +133,20 @@ impl ModelHead {
         }
     }
 
-    /// Returns true if the poses of both differ at most by whole cells.
+    /// Returns true if the poses of both differ at most in where the positions begin.
     fn same_poses(&self, other: &Self) -> bool {
         let within_a_cell = |own: &Self| {
-            let [x, y] = [Axis::X0, Axis::Y0].map(|axis| {
-                let range = own.ranges[axis];
-                (to_decimals(range.value(0).rem_euclid(1.0), 9), range.step())
-            });
-            let others = [Axis::Angle, Axis::ZoomX, Axis::ZoomY].map(|axis| own.ranges[axis]);
-            (x, y, others)
+            Axis::ALL.map(|axis| {
+                let [start, step] = own.ranges[axis].exact();
+                let start = match axis {
+                    Axis::X0 | Axis::Y0 => start.checked_rem_euclid(step).unwrap_or(start),
+                    _ => start,
+                };
+                (start, step, own.ranges[axis].count())
+            })
         };
         within_a_cell(self) == within_a_cell(other)
-            && (self.anchor, self.poses, self.shard) == (other.anchor, other.poses, other.shard)
+            && (self.anchor, self.shard) == (other.anchor, other.shard)
             && self.sensor.threshold() == other.sensor.threshold()
     }
 
@@ -272,36 +275,38 @@ impl Model {
         })
     }
 
-    /// Unites models of different shapes whose poses are one cell of the same steps and the same angles: the model of
-    /// all their shapes, on the largest of their sensors. Where on a sensor that cell lies changes no key, so it is the
-    /// model that one training of all shapes makes ([`Training::fitting`](super::Training::fitting)).
+    /// Unites models of different shapes that [`Training::fitting`] made in the same steps: the model that one such
+    /// training of all shapes makes. The sensor and the cell of positions are those of all shapes; where on a sensor the
+    /// cell lies changes no key.
     ///
     /// # Errors
     /// Returns an error if there is no model, if their poses differ in more than where the cell lies, or if two shapes
     /// have the same name.
     pub fn united(models: &[Self]) -> Result<Self, ModelError> {
-        let largest = models
-            .iter()
-            .rev()
-            .max_by_key(|model| model.sensor().side());
-        let Some(largest) = largest else {
-            return Err(ModelError::invalid("no shapes"));
+        let shapes: Vec<NamedShape> = models.iter().flat_map(Self::shapes).cloned().collect();
+        check_shapes(&shapes)?;
+        let other_poses = || ModelError::invalid("models of other poses");
+        let ranges = models.first().map(Self::ranges).ok_or_else(other_poses)?;
+        let steps = GridSteps {
+            positions: CellPositions::of(ranges).ok_or_else(other_poses)?,
+            angles: ranges[Axis::Angle],
         };
-        let mut head = largest.head.clone();
-        (head.shapes, head.cut) = (Vec::new(), Vec::new());
+        let training = Training::fitting(shapes, steps);
+        let training = training.map_err(|error| ModelError::Invalid(error.to_string().into()))?;
+        let mut head = training.head();
+        head.cut.clear();
         let mut gathered = Gathered::default();
         for model in models {
-            if !model.head.same_poses(&largest.head) {
-                return Err(ModelError::invalid("models of other poses"));
+            if !model.head.same_poses(&head) {
+                return Err(other_poses());
             }
-            let first = u16::try_from(head.shapes.len()).unwrap_or(u16::MAX);
+            let first = u16::try_from(head.cut.len()).unwrap_or(u16::MAX);
             for index in 0..model.keys.len() {
                 for count in model.counts(index) {
                     let shape = first.saturating_add(count.shape);
                     gathered.add(model.keys.get(index), ShapeCount::new(shape, count.poses));
                 }
             }
-            head.shapes.extend_from_slice(&model.head.shapes);
             head.cut.extend_from_slice(&model.head.cut);
         }
         let counts = |index: usize| gathered.counts[index].iter().copied();
@@ -581,21 +586,25 @@ mod tests {
     fn models_of_one_shape_each_are_united_to_the_model_of_all() {
         use crate::recognition::{GridSteps, Training, equal_figures};
         let steps = GridSteps::of(5, "0:330:30");
+        // The disc's cell of positions begins between whole cells; the bar is too large for 16 × 16.
+        let large = [Figure::ellipse(7.5, 7.5), Figure::rectangle(16.0, 9.0)];
+        let large = large.map(|own| own.on(&Sensor::LARGEST).expect("in range"));
         let mut shapes = equal_figures();
-        // Too large for 16 × 16, so the sensors differ.
-        let large = Figure::rectangle(16.0, 9.0).on(&Sensor::default());
-        shapes.insert(
-            2,
-            NamedShape::new("large", large.expect("in range")).weighted(3),
-        );
         let trained = |shapes: Vec<NamedShape>| {
             let training = Training::fitting(shapes, steps).expect("they fit");
             training.run().expect("not stopped")
         };
-        let parts = shapes.iter().map(|shape| trained(vec![shape.clone()]));
-        let parts: Vec<Model> = parts.collect();
-        assert_ne!(parts[0].sensor(), parts[2].sensor());
-        assert_eq!(Model::united(&parts), Ok(trained(shapes.clone())));
+        let parts = |shapes: &[NamedShape]| -> Vec<Model> {
+            shapes
+                .iter()
+                .map(|own| trained(vec![own.clone()]))
+                .collect()
+        };
+        for (name, figure) in ["disc", "bar"].into_iter().zip(large) {
+            shapes.insert(2, NamedShape::new(name, figure).weighted(3));
+            assert_eq!(Model::united(&parts(&shapes)), Ok(trained(shapes.clone())));
+        }
+        let parts = parts(&shapes[..2]);
         assert!(Model::united(&[parts[0].clone(), parts[0].clone()]).is_err());
         let other = Training::fitting(vec![shapes[1].clone()], GridSteps::of(5, "0:345:15"));
         let other = other.expect("it fits").run().expect("not stopped");

@@ -295,12 +295,20 @@ impl CellPositions {
     /// Hundredths of a cell, as in a sweep.
     pub const FINE: Self = Self(100);
 
-    /// Tenths of a cell.
-    pub const COARSE: Self = Self(10);
-
     /// Creates a number of positions; None if it is not a divisor of 100.
     pub fn new(count: u8) -> Option<Self> {
         (count > 0 && 100_u8.is_multiple_of(count)).then_some(Self(count))
+    }
+
+    /// Returns the number of positions of ranges that are one cell, with as many in each direction; None for others.
+    pub fn of(ranges: &Ranges) -> Option<Self> {
+        let of = |axis: Axis| {
+            let count = u8::try_from(ranges[axis].count()).ok()?;
+            let is_cell = (ranges[axis].step() * f64::from(count) - 1.0).abs() < 1e-9;
+            Self::new(count).filter(|_| is_cell)
+        };
+        let (x, y) = (of(Axis::X0)?, of(Axis::Y0)?);
+        (x == y).then_some(x)
     }
 
     /// Returns the number of positions.
@@ -330,10 +338,10 @@ impl GridSteps {
         angles: DecimalRange::from_units(0, 1, 0, 360),
     };
 
-    /// Tenths of a cell and every second degree: one in 200 poses of [`Self::FINE`].
+    /// Fifths of a cell and every third degree: one in 1,200 poses of [`Self::FINE`]. Touches between them are fitted.
     pub const COARSE: Self = Self {
-        positions: CellPositions::COARSE,
-        angles: DecimalRange::from_units(0, 2, 0, 180),
+        positions: CellPositions(5),
+        angles: DecimalRange::from_units(0, 3, 0, 120),
     };
 
     #[cfg(test)]

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use taxel_core::parameter::number;
 use taxel_core::pose::{Axis, DecimalRange};
 use taxel_core::recognition::{
-    CellPositions, Model, Separation, SeparationPoint, SizeAxis, SmallestSize, TrainingError,
+    CellPositions, Separation, SeparationPoint, SizeAxis, SmallestSize, TrainingError,
 };
 use taxel_core::sensor::Sensor;
 use taxel_files::formats::file::has_ending;
@@ -197,7 +197,8 @@ impl Separate {
                 let model = ready(find(model, &cx.shelf)?, self.table.quiet)?;
                 let mut separation = Separation::new(model.shapes().to_vec())?;
                 separation.steps.angles = model.ranges()[Axis::Angle];
-                separation.steps.positions = positions_of(&model).unwrap_or(CellPositions::FINE);
+                separation.steps.positions =
+                    CellPositions::of(model.ranges()).unwrap_or(CellPositions::FINE);
                 (separation, model.sensor().threshold())
             }
             _ => {
@@ -227,17 +228,6 @@ fn is_model(what: &OsStr, cx: &Context) -> bool {
         Ok(ModelChoice::File(_)) | Err(_) => has_ending(what, "npz"),
         Ok(built_in) => cx.shelf.imprint(built_in.name()).is_err(),
     }
-}
-
-fn positions_of(model: &Model) -> Option<CellPositions> {
-    let of = |axis| {
-        let range = model.ranges()[axis];
-        let count = u8::try_from(range.count()).ok()?;
-        let is_cell = (range.step() * f64::from(count) - 1.0).abs() < 1e-9;
-        CellPositions::new(count).filter(|_| is_cell)
-    };
-    let (x, y) = (of(Axis::X0)?, of(Axis::Y0)?);
-    (x == y).then_some(x)
 }
 
 /// A threshold, the limit of one touch at each size, and the smallest size that reaches the wanted error, if any does.
