@@ -124,10 +124,14 @@ impl Context {
         write(bytes)
     }
 
-    /// Writes a line to standard error. If it cannot be written, it is dropped: it is not part of the answer.
     pub(crate) fn note(&self, text: &str) {
-        let _ = writeln!(io::stderr().lock(), "{}", Charset::current().line(text));
+        note(text);
     }
+}
+
+/// Writes a line to standard error. If it cannot be written, it is dropped: it is not part of the answer.
+fn note(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{}", Charset::current().line(text));
 }
 
 fn write(bytes: &[u8]) -> Result<(), Failure> {

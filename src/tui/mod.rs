@@ -49,8 +49,6 @@ pub mod recognise;
 
 pub mod live;
 
-mod models;
-
 pub mod jobs;
 
 pub(crate) mod files;

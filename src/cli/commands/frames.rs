@@ -176,7 +176,7 @@ impl Frames {
             .pipeline(&cx.settings.watch_request().pipeline)?;
         let found = self.naming.find(&cx.shelf)?;
         let recording = RecordingFile::open(&self.file, self.reading.reading())?;
-        let namer = found.map(|found| found.ready(false)).transpose()?;
+        let namer = found.map(|found| found.ready()).transpose()?;
         let answering = Answering {
             asked: &self,
             cx,

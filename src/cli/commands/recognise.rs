@@ -48,9 +48,9 @@ place on the matrix. With --expect, the exit status is 3 if the answer is
 another shape, or is tied, rejected or unknown; if some lines cannot be
 answered, it is 1.
 
-Built-in models: 'figures', the seven figures at their default sizes;
-'figures-30', the same figures at about 30 cells each; 'shapes', the shapes that
-come with taxel.
+Built-in models: 'library', all shapes of the library; 'shapes', those that come
+with taxel; 'figures', the seven figures at their default sizes; 'figures-30',
+the same figures at about 30 cells each.
 
 Examples:
   taxel recognise touch.txt --model figures-30 --pose
@@ -66,7 +66,7 @@ pub(crate) struct Recognise {
     /// Imprint: shape of the library, or file; '-' for standard input
     #[arg(value_name = "NAME|FILE", value_parser = name_or_path())]
     what: OsString,
-    /// Name or file of a model; built in are figures (default), figures-30 and shapes
+    /// Name or file of a model; built in are library (default), figures, figures-30 and shapes
     #[arg(long, value_name = "MODEL", value_parser = name_or_path())]
     model: Option<OsString>,
     /// Show only the K likeliest shapes
@@ -102,8 +102,9 @@ pub(crate) struct Recognise {
 #[command(mut_arg("noise", |noise| noise.requires("model")))]
 #[command(mut_arg("tolerance", |tolerance| tolerance.requires("model")))]
 pub(crate) struct NamingFlags {
-    /// Name the shape that left the imprint: name or file of a model; built in are figures, figures-30 and shapes
+    /// Name the shape that left the imprint: name or file of a model; built in are library (default), figures, figures-30 and shapes
     #[arg(long, value_name = "MODEL", value_parser = name_or_path())]
+    #[arg(num_args = 0..=1, default_missing_value = model::DEFAULT)]
     pub(crate) model: Option<OsString>,
     #[command(flatten)]
     pub(crate) terms: TermsFlags,
@@ -154,10 +155,10 @@ fn noise(text: &str) -> Result<Noise, String> {
 pub(crate) struct FoundNamer(FoundModel, Terms);
 
 impl FoundNamer {
-    /// Trains a built-in model that is not in the cache; this may take some seconds.
-    pub(crate) fn ready(self, quiet: bool) -> Result<Namer, Failure> {
+    /// Trains the shapes of a built-in model that are not in the cache.
+    pub(crate) fn ready(self) -> Result<Namer, Failure> {
         Ok(Namer {
-            model: model::ready(self.0, quiet)?,
+            model: model::ready(self.0, false)?,
             terms: self.1,
             mask: None,
             top: None,
@@ -271,7 +272,7 @@ impl Recognise {
             top: self.top.map(wide),
             asks_pose: self.pose,
             pitch_mm,
-            ..FoundNamer(found, terms).ready(false)?
+            ..FoundNamer(found, terms).ready()?
         };
         match input {
             Question::Touch(content) => self.answer_imprint(&content, &namer, cx),

@@ -28,8 +28,7 @@ use taxel_core::progress::{Progress, stop_if};
 use taxel_files::formats::file::system_reason;
 use taxel_files::formats::{Name, StoredShape};
 use taxel_files::storage::{
-    Expected, Journal, Library, ModelCache, ModelChoice, ModelFolder, Models, Orphan,
-    RememberedFile,
+    Expected, Journal, Library, ModelCache, ModelChoice, Models, Orphan, RememberedFile,
 };
 use tempfile::TempDir;
 
@@ -181,7 +180,7 @@ impl Jobs {
             adopted: Vec::new(),
             remembers: false,
             models: Models {
-                folder: Some(ModelFolder::of(library.folder())),
+                library: library.clone(),
                 cache: None,
             },
             sources: Sources::default(),

@@ -25,7 +25,7 @@ pub mod history;
 
 pub mod reading;
 
-mod names;
+pub(crate) mod names;
 
 mod threshold;
 

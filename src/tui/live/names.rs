@@ -14,7 +14,6 @@ use crate::tui::app::state::App;
 use crate::tui::jobs::{Slot, answer};
 use crate::tui::live::update;
 use crate::tui::live::view::{Lines, SHAPE};
-use crate::tui::models;
 use crate::tui::widget::theme::Theme;
 
 /// The model that names imprints, and its last answer.
@@ -129,7 +128,8 @@ pub(super) fn name_by(app: &mut App, choice: Option<ModelChoice>) {
     let Some(choice) = choice else { return };
     let models = app.jobs.models.clone();
     app.jobs.run(Slot::Names, move |progress| {
-        let model = models::ready(&models, choice, |_| {}, progress).map(Arc::new);
+        let found = models.find(choice).map_err(|error| error.to_string());
+        let model = found.and_then(|found| found.ready(progress)).map(Arc::new);
         answer(move |app| {
             if let Some(page) = update::page(app) {
                 page.names.model = Some(model);
@@ -146,6 +146,14 @@ pub(super) fn name_on(app: &mut App, terms: Terms) {
     };
     (page.names.terms, page.names.answer) = (terms, None);
     page.name();
+}
+
+/// Trains shapes of the library that are new, if it names the imprints.
+pub(crate) fn library_changed(app: &mut App) {
+    let page = update::page(app);
+    if page.is_some_and(|page| page.names.choice == Some(ModelChoice::Library)) {
+        name_by(app, Some(ModelChoice::Library));
+    }
 }
 
 /// Names the imprints of the source by the next model, which may be one of the user's own.

@@ -60,10 +60,10 @@ pub(super) struct Preparation {
 }
 
 impl Recognition {
-    /// Begins with the seven figures, without a model; random touches come from a seed.
+    /// Begins with the shapes of the library, without a model; random touches come from a seed.
     pub(crate) fn new(seed: u64) -> Self {
         Self {
-            choice: ModelChoice::Figures,
+            choice: ModelChoice::Library,
             trained: None,
             preparing: None,
             unreadable: None,
@@ -290,13 +290,13 @@ fn name_model(app: &mut App) {
 }
 
 /// Has the model prepared if there is none, or if it is that of another set. A training may take long: a set whose model
-/// is ready or on its way is not prepared again. But a file is read again if it was written since, when the page was
-/// `opened` just now or its set is asked for.
+/// is ready or on its way is not prepared again. But when the page was `opened` just now or its set is asked for, a file
+/// that was written since is read again, and new shapes of the library are trained.
 fn prepare(app: &mut App, choice: Option<ModelChoice>, opened: bool) {
     let page = &mut app.recognition;
     let looks_again = opened || choice.is_some();
     let choice = choice.unwrap_or_else(|| page.choice().clone());
-    let is_ready = page.trained.is_some() && !(looks_again && choice.is_read());
+    let is_ready = page.trained.is_some() && !(looks_again && choice.may_change());
     if choice == *page.choice() && (page.preparing.is_some() || is_ready) {
         return;
     }
@@ -322,6 +322,14 @@ fn prepare(app: &mut App, choice: Option<ModelChoice>, opened: bool) {
         let stored = models.names();
         answer(move |app| take_model(app, stored, trained))
     });
+}
+
+/// Has the model of the library prepared anew if it answers on an open page; otherwise that is done when it is opened.
+pub(crate) fn library_changed(app: &mut App) {
+    if is_open(app) && *app.recognition.choice() == ModelChoice::Library {
+        app.recognition.preparing = None;
+        prepare(app, Some(ModelChoice::Library), false);
+    }
 }
 
 /// Takes the model that was prepared. If it could not be read, the set before it stays.

@@ -10,10 +10,9 @@ use taxel_core::pose::{Pose, PoseGrid};
 use taxel_core::recognition::{Evaluation, Model, below};
 use taxel_core::sensor::Sensor;
 use taxel_core::touch::Plane;
-use taxel_files::storage::{ModelChoice, Models};
+use taxel_files::storage::{FoundModel, ModelChoice, Models};
 
 use crate::tui::jobs::JobProgress;
-use crate::tui::models;
 use crate::tui::recognise::confusion::{Examples, examples};
 
 /// The poses of a random touch from one value of a range to the next.
@@ -30,7 +29,8 @@ pub(crate) struct TrainedModel {
 }
 
 impl TrainedModel {
-    /// Reads a model, or trains it. `known` is the one of the set so far, which stays if its file was not written since.
+    /// Reads a model, or trains it. `known` is the one of the set so far, which stays if neither its file was written
+    /// since nor the shapes of its set are others.
     pub(super) fn prepare(
         models: &Models,
         choice: ModelChoice,
@@ -41,17 +41,26 @@ impl TrainedModel {
         // Before it is read: if it is written meanwhile, it is read again the next time.
         let file = models.file(&choice).and_then(|path| path.metadata().ok());
         let version = file.and_then(|file| Some((file.len(), file.modified().ok()?)));
-        let is_same = |known: &Arc<Self>| known.version == version && known.choice == choice;
-        if let Some(known) = known.filter(|known| version.is_some() && is_same(known)) {
-            return Ok(known);
+        let known = known.filter(|known| known.choice == choice);
+        let is_unchanged = |known: &&Arc<Self>| version.is_some() && known.version == version;
+        if let Some(known) = known.as_ref().filter(is_unchanged) {
+            return Ok(Arc::clone(known));
         }
-        let begins = |poses| {
+        let found = models
+            .find(choice.clone())
+            .map_err(|error| error.to_string())?;
+        if let FoundModel::BuiltIn { set, .. } = &found {
+            let is_same = |known: &Arc<Self>| known.model.shapes() == set.shapes();
+            if let Some(known) = known.filter(is_same) {
+                return Ok(known);
+            }
+            let poses = set.poses();
             progress.post(move |app| {
                 let preparing = app.recognition.preparing.as_mut();
                 preparing.map(|preparing| preparing.poses.insert(poses));
             });
-        };
-        let model = models::ready(models, choice.clone(), begins, progress)?;
+        }
+        let model = found.ready(progress)?;
         Ok(Arc::new(Self {
             evaluation: Evaluation::of(&model),
             examples: examples(&model),

@@ -18,6 +18,7 @@ use crate::tui::app::unsaved::quit;
 use crate::tui::form::FormDialog;
 use crate::tui::jobs::{answer, caught};
 use crate::tui::keys::action;
+use crate::tui::{live, recognise};
 
 /// Does with the shape of that name what it was chosen for.
 pub(crate) fn named(app: &mut App, purpose: Purpose, name: String) {
@@ -105,6 +106,7 @@ fn delete(app: &mut App, name: String) {
             Ok(name) => {
                 // The matrix may show the only copy that is left.
                 app.history.removed(&name);
+                changed(app);
                 let text = format!("{name} deleted; :restore {name} brings it back");
                 inform(app, text);
             }
@@ -119,10 +121,19 @@ pub(crate) fn restore(app: &mut App, name: Option<String>) {
         let restored = library.restore(name.as_deref());
         let restored = restored.map_err(|error| not_changed(library, "not restored", &error));
         answer(|app| match restored {
-            Ok(name) => inform(app, format!("{name} is back")),
+            Ok(name) => {
+                changed(app);
+                inform(app, format!("{name} is back"));
+            }
             Err(reason) => refuse(app, reason),
         })
     });
+}
+
+/// The pages that name shapes have to know others from now on.
+fn changed(app: &mut App) {
+    recognise::page::library_changed(app);
+    live::names::library_changed(app);
 }
 
 /// Saves what is on the matrix. It replaces no file, not even the one that the document came from: if there is one, the
@@ -202,6 +213,7 @@ fn on_stored(app: &mut App, stored: Stored) {
     match stored {
         Stored::As(stamp) => {
             let name = saving.shape.name.to_string();
+            changed(app);
             inform(app, format!("saved as {name}"));
             let name = StoredName {
                 name,

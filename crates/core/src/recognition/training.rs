@@ -188,15 +188,6 @@ impl<'a> Training<'a> {
         head
     }
 
-    /// Returns true if a model has the head that the model of this training will have. It tells nothing about the keys
-    /// and how they were counted.
-    pub fn would_make(&self, model: &Model) -> bool {
-        let (mut head, cut) = (self.head(), model.cut());
-        let is_allowed = self.allow_cut || cut.iter().all(|&cut| cut == 0);
-        head.cut = cut.to_vec();
-        is_allowed && head == *model.head()
-    }
-
     /// Runs the training.
     ///
     /// # Errors

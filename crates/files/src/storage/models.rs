@@ -1,14 +1,15 @@
 //! Models of shapes as files: the user's own, by name in the folder `models` of the library, and a cache of models that
-//! can be trained again.
+//! can be trained again. A built-in set is united from models of single shapes, so of a set that has changed only the new
+//! shapes are trained.
 
 use std::ffi::OsStr;
 use std::fmt;
 use std::fs;
 use std::io::{BufRead, BufReader, Cursor, ErrorKind};
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
 
 use taxel_core::picture::Picture;
+use taxel_core::progress::Progress;
 use taxel_core::quote::{did_you_mean, shortened};
 use taxel_core::recognition::{
     GridSteps, Model, NamedShape, Training, TrainingError, default_figures, equal_figures,
@@ -21,20 +22,18 @@ use crate::error::ReadError;
 use crate::formats::file::without_mark;
 use crate::formats::name::folded;
 use crate::formats::{Name, StoredShape, model_header, read_model, write_model};
+use crate::memory::MemoryGuard;
 use crate::storage::error::FileError;
 use crate::storage::file::{
     self, Existing, check_writable, make_folder, open, paths_in, sync_folder, wrong,
 };
-use crate::storage::library::below_home;
+use crate::storage::library::{Library, LibraryEntry, below_home};
 use crate::storage::shipped;
 
 /// The folder of the models in that of a library.
 pub(super) const FOLDER: &str = "models";
 
 const ENDING: &str = "npz";
-
-/// The largest size of a cached model, in bytes.
-const MAX_CACHED: usize = 64 << 20;
 
 /// The version of the algorithms that count the keys of a model. Increase it when the same training makes another
 /// model, so that models cached before are not used.
@@ -192,9 +191,9 @@ impl ModelFolder {
     }
 }
 
-/// A cache of models, which are trained again when they are missing.
+/// A cache of models of single shapes, which are trained again when they are missing.
 ///
-/// The name of a file is a hash of what was trained, by which version, so another set or grid has another file. A file
+/// The name of a file is a hash of what was trained, by which version, so another shape or grid has another file. A file
 /// that is damaged, of an older version, or of something else is not used.
 #[derive(Clone, Debug)]
 pub struct ModelCache(PathBuf);
@@ -218,29 +217,26 @@ impl ModelCache {
     }
 }
 
-/// The model of a training from the cache. If the cache does not have it, `train` makes it, and it is kept
-/// there, unless it takes more than 64 MiB. Without a cache it is trained each time.
-///
-/// # Errors
-/// The errors of `train`.
-fn cached_or_trained<'a, E>(
+/// The model of a shape from the cache, or trained and kept there. Both report all poses, so it does not depend on the
+/// cache whether a script stays within its poses.
+fn part(
+    shape: &NamedShape,
     cache: Option<&ModelCache>,
-    training: Training<'a>,
-    train: impl FnOnce(Training<'a>) -> Result<Model, E>,
-) -> Result<Model, E> {
-    let Some(cache) = cache else {
-        return train(training);
-    };
-    let path = cache.file(&training);
-    let kept = load_model(&path).ok();
-    if let Some(model) = kept.filter(|model| training.would_make(model)) {
-        return Ok(model);
+    progress: &dyn Progress,
+) -> Result<Model, TrainingError> {
+    let training = Training::fitting([shape.clone()], GridSteps::COARSE)?.with_progress(progress);
+    let path = cache.map(|cache| cache.file(&training));
+    let kept = path.as_ref().and_then(|path| load_model(path).ok());
+    if let Some(model) = kept.filter(|model| *model.head() == training.head()) {
+        let goes_on = progress.add(training.poses()).is_continue();
+        return goes_on.then_some(model).ok_or(TrainingError::Stopped);
     }
-    let model = train(training)?;
-    let bytes = file_content(&model);
-    if bytes.len() <= MAX_CACHED && make_folder(&cache.0).is_ok() {
+    let model = training.run()?;
+    if let Some(path) = path
+        && make_folder(file::folder_of(&path)).is_ok()
+    {
         // A cache that cannot be written to is not an error: the model is trained again next time.
-        let _ = file::write(&path, &bytes, Existing::Replaced);
+        let _ = save_model(&model, &path, Existing::Replaced);
     }
     Ok(model)
 }
@@ -260,6 +256,8 @@ fn file_content(model: &Model) -> Vec<u8> {
 /// A set of shapes that can be chosen for recognition.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum ModelChoice {
+    /// Every stored shape: the user's own, and those that come with the program.
+    Library,
     /// The seven figures at the sizes that forms propose.
     Figures,
     /// The seven figures of about 30 cells.
@@ -272,12 +270,14 @@ pub enum ModelChoice {
     File(PathBuf),
 }
 
-/// The name, the shapes and the steps of a set that needs no file.
-type BuiltIn = (&'static str, fn() -> Vec<NamedShape>, GridSteps);
-
 impl ModelChoice {
-    /// The choices that need no file.
-    pub const BUILT_IN: &'static [Self] = &[Self::Figures, Self::EqualFigures, Self::Shipped];
+    /// The sets that need no model's file; the first one is the default everywhere.
+    pub const BUILT_IN: &'static [Self] = &[
+        Self::Library,
+        Self::Figures,
+        Self::EqualFigures,
+        Self::Shipped,
+    ];
 
     /// The choice of that name: a built-in one, otherwise a stored model.
     pub fn from_name(name: Name) -> Self {
@@ -292,51 +292,32 @@ impl ModelChoice {
         name.map_or_else(|| Self::File(text.into()), Self::from_name)
     }
 
-    fn built_in(&self) -> Option<BuiltIn> {
-        match self {
-            Self::Figures => Some(("figures", default_figures, GridSteps::FINE)),
-            Self::EqualFigures => Some(("figures-30", equal_figures, GridSteps::FINE)),
-            // In hundredths and whole degrees they leave 5.2 million imprints; in these steps they are trained in a
-            // second or two.
-            Self::Shipped => Some(("shapes", shipped_shapes, GridSteps::COARSE)),
-            Self::Stored(_) | Self::File(_) => None,
-        }
-    }
-
     /// The name that is used after `:recognise`.
     pub fn name(&self) -> &str {
         match self {
+            Self::Library => "library",
+            Self::Figures => "figures",
+            Self::EqualFigures => "figures-30",
+            Self::Shipped => "shapes",
             Self::Stored(name) => name.as_str(),
             Self::File(path) => path.file_name().and_then(OsStr::to_str).unwrap_or("file"),
-            own => own.built_in().map_or("", |(name, ..)| name),
         }
-    }
-
-    /// The training of a built-in set; None for a stored model or a file. How far its shapes reach is
-    /// computed once.
-    ///
-    /// # Errors
-    /// If the set cannot be trained.
-    pub fn training(&self) -> Option<Result<Training<'static>, TrainingError>> {
-        static FITTED: [OnceLock<Result<Training<'static>, TrainingError>>; 3] =
-            [const { OnceLock::new() }; 3];
-        let (_, shapes, steps) = self.built_in()?;
-        let number = Self::BUILT_IN.iter().position(|own| own == self)?;
-        let fitted = FITTED[number].get_or_init(|| Training::fitting(shapes(), steps));
-        Some(fitted.clone())
     }
 
     /// Whether the model is read from a file of the user's rather than trained.
     pub fn is_read(&self) -> bool {
-        self.built_in().is_none()
+        matches!(self, Self::Stored(_) | Self::File(_))
+    }
+
+    /// Whether its model may be another one the next time.
+    pub fn may_change(&self) -> bool {
+        self.is_read() || *self == Self::Library
     }
 }
 
-fn shipped_shapes() -> Vec<NamedShape> {
-    let picture = |shape: StoredShape| {
-        NamedShape::new(shape.name.to_string(), Picture::at_home(shape.imprint))
-    };
-    shipped::all().map(picture).collect()
+/// The picture of a stored shape, as `{"picture":"washer"}` means it.
+fn picture(shape: StoredShape) -> NamedShape {
+    NamedShape::new(shape.name.to_string(), Picture::at_home(shape.imprint))
 }
 
 impl fmt::Display for ModelChoice {
@@ -346,24 +327,28 @@ impl fmt::Display for ModelChoice {
 }
 
 /// The models that can be chosen: built-in sets, those of a library, and files.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Models {
-    /// The stored models; None without a library.
-    pub folder: Option<ModelFolder>,
-    /// Where trained built-in sets are kept; None to train them each time.
+    /// The library, which has the stored models, too.
+    pub library: Library,
+    /// Where models of the shapes of built-in sets are kept; None to train them each time.
     pub cache: Option<ModelCache>,
 }
 
 impl Models {
+    fn folder(&self) -> ModelFolder {
+        ModelFolder::of(self.library.folder())
+    }
+
     /// The names of the stored models.
     pub fn names(&self) -> Vec<Name> {
-        self.folder.iter().flat_map(ModelFolder::names).collect()
+        self.folder().names()
     }
 
     /// The file of a choice, if it is read from one. A path may begin with `~`.
     pub fn file(&self, choice: &ModelChoice) -> Option<PathBuf> {
         match choice {
-            ModelChoice::Stored(name) => self.folder.as_ref()?.find(name),
+            ModelChoice::Stored(name) => self.folder().find(name),
             ModelChoice::File(path) => {
                 let below_home = path.to_str().and_then(below_home);
                 Some(below_home.unwrap_or_else(|| path.clone()))
@@ -393,7 +378,7 @@ impl Models {
         }
     }
 
-    /// Reads the model of a file, or prepares the training of a built-in set.
+    /// Reads the model of a file, or gathers the shapes of a built-in set.
     ///
     /// # Errors
     /// If there is no such model, or its file cannot be read as one.
@@ -402,12 +387,48 @@ impl Models {
         if let Some(path) = self.file(&choice) {
             return Ok(FoundModel::Read(Box::new(load_whole_model(&path)?)));
         }
-        match choice.training() {
-            Some(Ok(training)) => Ok(FoundModel::BuiltIn(training, self.cache.clone())),
-            Some(Err(error)) => Err(ReadError::new(error.to_string())),
+        let mut left_out = Vec::new();
+        let shapes = match choice {
+            ModelChoice::Library => self.stored_shapes(&mut left_out),
+            ModelChoice::Figures => default_figures(),
+            ModelChoice::EqualFigures => equal_figures(),
+            ModelChoice::Shipped => shipped::all().map(picture).collect(),
             // It was deleted in between.
-            None => Err(ReadError::new(unknown_set(choice.name(), &self.names()))),
+            ModelChoice::Stored(_) | ModelChoice::File(_) => {
+                return Err(ReadError::new(unknown_set(choice.name(), &self.names())));
+            }
+        };
+        match Training::fitting(shapes, GridSteps::COARSE) {
+            Ok(set) => Ok(FoundModel::BuiltIn {
+                set,
+                left_out,
+                cache: self.cache.clone(),
+            }),
+            Err(error) => Err(ReadError::new(error.to_string())),
         }
+    }
+
+    /// All shapes of the library that can be trained; the others are described in `left_out`.
+    fn stored_shapes(&self, left_out: &mut Vec<String>) -> Vec<NamedShape> {
+        let Ok(entries) = self.library.list() else {
+            left_out.push("your own shapes (unreadable folder)".to_owned());
+            return shipped::all().map(picture).collect();
+        };
+        let trainable = |name: &str| {
+            let stored = self.library.load(name).map_err(|_| "unreadable")?.shape;
+            if stored.imprint.is_empty() {
+                return Err("no active taxel");
+            }
+            let shape = picture(stored);
+            let fits = Training::fitting([shape.clone()], GridSteps::COARSE);
+            fits.map(|_| shape).map_err(|_| "too large")
+        };
+        let shapes = entries.into_iter().filter_map(|LibraryEntry { name, .. }| {
+            let shape = trainable(&name);
+            let left = shape.map_err(|reason| left_out.push(format!("{name} ({reason})")));
+            left.ok()
+        });
+        shapes.collect()
     }
 }
 
@@ -416,8 +437,15 @@ impl Models {
 pub enum FoundModel {
     /// From a file.
     Read(Box<Model>),
-    /// A built-in set, and the cache that may have its model.
-    BuiltIn(Training<'static>, Option<ModelCache>),
+    /// A built-in set.
+    BuiltIn {
+        /// The training of all its shapes, which says what the model will be.
+        set: Training<'static>,
+        /// The stored shapes that are not in the set, each with the reason.
+        left_out: Vec<String>,
+        /// Where models of its shapes are kept.
+        cache: Option<ModelCache>,
+    },
 }
 
 impl FoundModel {
@@ -425,7 +453,7 @@ impl FoundModel {
     pub fn shapes(&self) -> &[NamedShape] {
         match self {
             Self::Read(model) => model.shapes(),
-            Self::BuiltIn(training, _) => training.shapes(),
+            Self::BuiltIn { set, .. } => set.shapes(),
         }
     }
 
@@ -433,22 +461,31 @@ impl FoundModel {
     pub fn sensor(&self) -> Sensor {
         match self {
             Self::Read(model) => *model.sensor(),
-            Self::BuiltIn(training, _) => *training.grids()[0].sensor(),
+            Self::BuiltIn { set, .. } => *set.grids()[0].sensor(),
         }
     }
 
-    /// The model itself: as it was read, from the cache, or else made by `train`.
+    /// The model itself: as it was read, or united from those of its shapes, of which the cache has some. `progress` is
+    /// told the poses of these.
     ///
     /// # Errors
-    /// The errors of `train`.
-    pub fn ready<E>(
-        self,
-        train: impl FnOnce(Training<'static>) -> Result<Model, E>,
-    ) -> Result<Model, E> {
-        match self {
-            Self::Read(model) => Ok(*model),
-            Self::BuiltIn(training, cache) => cached_or_trained(cache.as_ref(), training, train),
-        }
+    /// A sentence, if the training is stopped or memory runs short.
+    pub fn ready(self, progress: &dyn Progress) -> Result<Model, String> {
+        let (set, cache) = match self {
+            Self::Read(model) => return Ok(*model),
+            Self::BuiltIn { set, cache, .. } => (set, cache),
+        };
+        let memory = MemoryGuard::new(None, "train a model of fewer shapes (taxel model train)");
+        let parts = memory.limit(progress, |progress| {
+            let shapes = set.shapes().iter();
+            let parts = shapes.map(|shape| part(shape, cache.as_ref(), progress));
+            parts.collect::<Result<Vec<Model>, TrainingError>>()
+        })?;
+        let model = parts.and_then(|parts| Ok(Model::united(&parts)?));
+        model.map_err(|error| match error {
+            TrainingError::Stopped => "training was stopped".to_owned(),
+            error => error.to_string(),
+        })
     }
 }
 
@@ -466,11 +503,16 @@ fn unknown_set(name: &str, stored: &[Name]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicU64, Ordering};
+
     use taxel_core::figure::Figure;
+    use taxel_core::imprint::Imprint;
     use taxel_core::pose::{Anchor, Axis, Ranges};
+    use taxel_core::progress::{ToTheEnd, stop_if};
     use taxel_core::recognition::Evaluation;
 
     use super::*;
+    use crate::storage::library::Expected;
 
     fn training(side: f64) -> Training<'static> {
         let sensor = Sensor::default();
@@ -554,37 +596,115 @@ mod tests {
         assert!(models.check(&name, Existing::Kept).is_err());
     }
 
-    #[test]
-    fn a_cache_returns_only_models_of_the_same_training() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let cache = ModelCache::in_folder(folder.path().join("cache"));
-        // Returns whether a model was trained, and the model.
-        let model = |side: f64| {
-            let mut is_trained = false;
-            let model = cached_or_trained(Some(&cache), training(side), |training| {
-                is_trained = true;
-                training.run()
-            });
-            (is_trained, model.expect("not stopped"))
+    /// An empty library, and its models with a cache.
+    fn library(folder: &Path) -> (Library, Models) {
+        let library = Library::open(folder.join("library"));
+        let models = Models {
+            library: library.clone(),
+            cache: Some(ModelCache::in_folder(folder.join("cache"))),
         };
-        let trained = training(4.0).run().expect("not stopped");
-        let path = cache.file(&training(4.0));
-        assert!(model(4.0).0);
-        let (is_trained, cached) = model(4.0);
-        assert!(!is_trained);
-        assert_eq!(Evaluation::of(&cached), Evaluation::of(&trained));
-        assert!(model(4.1).0);
-        // After damage the model is trained again, and a training that was stopped is not kept.
-        let mut bytes = fs::read(&path).expect("it is there");
-        bytes.truncate(bytes.len() / 2);
-        fs::write(&path, bytes).expect("written");
-        let stopped = cached_or_trained(Some(&cache), training(4.0), |_| Err("stopped"));
-        assert_eq!(stopped.err(), Some("stopped"));
-        assert!(model(4.0).0);
-        assert!(!model(4.0).0);
-        // Nothing is kept without a cache.
-        let trained = cached_or_trained(None, training(4.0), |_| Err("trained"));
-        assert_eq!(trained.err(), Some("trained"));
+        (library, models)
+    }
+
+    fn stored(library: &Library, name: &str, rows: &str) {
+        let imprint: Imprint = rows.parse().expect("an imprint");
+        let sensor = Sensor::new(imprint.columns(), imprint.rows()).expect("a sensor");
+        let name = Name::new(name).expect("a name");
+        let shape = StoredShape::new(name, sensor, imprint, None).expect("it fits");
+        library.save(&shape, Expected::Anything).expect("saved");
+    }
+
+    fn found(models: &Models) -> (FoundModel, Vec<String>) {
+        let found = models.find(ModelChoice::Library).expect("a set");
+        let left_out = match &found {
+            FoundModel::BuiltIn { left_out, .. } => left_out.clone(),
+            FoundModel::Read(_) => panic!("it is trained"),
+        };
+        (found, left_out)
+    }
+
+    #[test]
+    fn the_library_is_every_stored_shape_that_can_be_trained() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (library, models) = library(folder.path());
+        let names = || -> Vec<String> {
+            let (found, _) = found(&models);
+            found.shapes().iter().map(|own| own.name.clone()).collect()
+        };
+        let shipped: Vec<String> = shipped::names().map(str::to_owned).collect();
+        assert_eq!(names(), shipped);
+        stored(&library, "Mine", "##\n#.");
+        stored(&library, "blank", "..\n..");
+        stored(
+            &library,
+            "too large",
+            &format!("{}\n", "#".repeat(64)).repeat(64),
+        );
+        // A copy by hand takes the place of the shipped shape, whatever the case of its name.
+        let folder = library.folder();
+        fs::copy(folder.join("Mine.json"), folder.join("WASHER.json")).expect("copied");
+        fs::write(folder.join("broken.json"), "{").expect("written");
+        let mut expected = vec!["Mine".to_owned(), "WASHER".to_owned()];
+        expected.extend(shipped.into_iter().filter(|name| name != "washer"));
+        assert_eq!(names(), expected);
+        let reasons = [
+            "blank (no active taxel)",
+            "broken (unreadable)",
+            "too large (too large)",
+        ];
+        assert_eq!(found(&models).1, reasons);
+        // The set of shipped shapes stays as it is.
+        let shapes = models.find(ModelChoice::Shipped).expect("a set");
+        assert_eq!(shapes.shapes().len(), 28);
+    }
+
+    #[test]
+    fn only_changed_shapes_are_trained() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (library, models) = library(folder.path());
+        let files = || paths_in(&folder.path().join("cache")).expect("read");
+        let ready = || found(&models).0.ready(&ToTheEnd).expect("not stopped");
+        stored(&library, "own", "##\n#.");
+        let first = ready();
+        assert_eq!((first.shapes().len(), files().len()), (29, 29));
+        // The model of all shapes together is that of one training.
+        let FoundModel::BuiltIn { set, .. } = found(&models).0 else {
+            panic!("it is trained");
+        };
+        assert_eq!(set.run().as_ref(), Ok(&first));
+        let before = files();
+        let written = || {
+            let time = |path: &PathBuf| path.metadata().and_then(|file| file.modified());
+            before
+                .iter()
+                .map(|path| time(path).expect("it is there"))
+                .collect::<Vec<_>>()
+        };
+        let first_written = written();
+        stored(&library, "own", "##\n##");
+        assert_ne!(ready(), first);
+        assert_eq!(files().len(), 30);
+        stored(&library, "own", "##\n#.");
+        assert!(ready() == first);
+        assert_eq!(written(), first_written, "none was trained again");
+        // A damaged file is made again.
+        let damaged = fs::read(&before[0]).expect("read");
+        fs::write(&before[0], &damaged[..damaged.len() / 2]).expect("written");
+        assert!(ready() == first);
+        assert_eq!(fs::read(&before[0]).expect("read"), damaged);
+        // That of another shape is, too.
+        fs::copy(&before[1], &before[0]).expect("copied");
+        assert!(ready() == first);
+        // Whether it is trained or read, it can be stopped, and all poses are counted.
+        let counted = AtomicU64::new(0);
+        let count = |poses: u64| {
+            counted.fetch_add(poses, Ordering::Relaxed);
+            stop_if(false)
+        };
+        assert!(found(&models).0.ready(&count).is_ok());
+        assert_eq!(counted.into_inner(), 29 * 3000);
+        let stopped = found(&models).0.ready(&|_: u64| stop_if(true));
+        assert_eq!(stopped.err().as_deref(), Some("training was stopped"));
     }
 
     #[test]

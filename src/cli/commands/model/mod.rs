@@ -22,7 +22,6 @@ use taxel_files::storage::{
     self, FoundModel, ModelCache, ModelChoice, ModelFolder, Models, check_writable,
 };
 
-use crate::cli::Context;
 use crate::cli::arguments::flags::{name_or_path, report};
 use crate::cli::commands::export::{replacing, written};
 use crate::cli::failure::{Failure, Named};
@@ -30,9 +29,10 @@ use crate::cli::input::shapes::Shelf;
 use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::output::table::{Record, csv};
 use crate::cli::signals::{Signals, on_threads};
+use crate::cli::{Context, note};
 
-/// The model that is used if none is named: the seven figures at their default sizes.
-pub(crate) const DEFAULT: &str = "figures";
+/// The model that is used if none is named: all shapes of the library.
+pub(crate) const DEFAULT: &str = "library";
 
 /// The most shapes of a table of all pairs; more would take gigabytes.
 const MOST_PAIRED: usize = 4096;
@@ -42,7 +42,7 @@ A model holds every imprint that its shapes can leave, and in how many poses
 each shape leaves it. The best answer to a touch is the shape that leaves its
 imprint in the most poses: no method names a smaller share of touches wrong.
 MODEL is a file, the name of one of your models, or the name of a
-built-in model: figures, figures-30 or shapes.
+built-in model: library, figures, figures-30 or shapes.
 
 Examples:
   taxel model train parts.jsonl --name parts
@@ -215,7 +215,7 @@ fn folder(shelf: &Shelf) -> Result<ModelFolder, Failure> {
 /// The models that a command may name.
 pub(crate) fn models(shelf: &Shelf) -> Models {
     Models {
-        folder: folder(shelf).ok(),
+        library: shelf.readable(),
         cache: ModelCache::of_user(),
     }
 }
@@ -225,16 +225,20 @@ pub(crate) fn find(which: impl AsRef<OsStr>, shelf: &Shelf) -> Result<FoundModel
     Ok(models(shelf).find(ModelChoice::from_text(which))?)
 }
 
-/// Returns a model that was found. A built-in set that is not in the cache is trained, which takes some seconds.
+/// Returns a model that was found. Shapes of a built-in set that are not in the cache are trained: many in a second.
 /// Signals are not caught meanwhile: nothing would have to be removed.
 pub(crate) fn ready(found: FoundModel, quiet: bool) -> Result<Model, Failure> {
-    found.ready(|training| {
-        let advice = "train a model of fewer shapes or coarser steps (taxel model train)";
-        let display = ProgressDisplay::new("poses", training.poses(), quiet);
-        let model = MemoryGuard::new(None, advice)
-            .limit(&display, |progress| training.with_progress(progress).run());
-        Ok(model.map_err(Failure::new)??)
-    })
+    let poses = match &found {
+        FoundModel::BuiltIn { set, left_out, .. } => {
+            if !quiet && !left_out.is_empty() {
+                note(&format!("left out: {}", left_out.join(", ")));
+            }
+            set.poses()
+        }
+        FoundModel::Read(_) => 0,
+    };
+    let display = ProgressDisplay::new("poses", poses, quiet);
+    found.ready(&display).map_err(Failure::new)
 }
 
 /// Long work whose progress is counted in `all` of a noun. None from it means that a signal stopped it.
