@@ -111,7 +111,7 @@ impl Evaluation {
             information_bits: 0.0,
             prior_bits: prior_bits(model),
             keys: 0,
-            confusion: ConfusionMatrix::new(shapes.len()),
+            confusion: ConfusionMatrix::new(shapes.len(), shapes.len()),
             weights: model.weights(),
         }
     }
@@ -261,21 +261,29 @@ pub struct ConfusionMatrix {
 }
 
 impl ConfusionMatrix {
-    pub(super) fn new(shapes: usize) -> Self {
+    pub(super) fn new(shapes: usize, names: usize) -> Self {
         Self {
             rows: vec![BTreeMap::new(); shapes],
-            named: vec![0; shapes],
+            named: vec![0; names],
         }
     }
 
+    /// Counts touches of a shape, for which a row is added if there is none.
     pub(super) fn add(&mut self, touched: usize, named: usize, touches: u128) {
         self.named[named] += touches;
+        let rows = self.rows.len().max(touched + 1);
+        self.rows.resize(rows, BTreeMap::new());
         *self.rows[touched].entry(named).or_default() += touches;
     }
 
-    /// Returns the number of shapes.
+    /// Returns the number of shapes that were touched: the rows.
     pub fn shapes(&self) -> usize {
         self.rows.len()
+    }
+
+    /// Returns the number of names: the columns.
+    pub fn names(&self) -> usize {
+        self.named.len()
     }
 
     /// Returns how many touches of one shape are named as another one; 0 if there is no such shape.
@@ -308,7 +316,7 @@ impl ConfusionMatrix {
     /// on.
     pub fn rows(&self) -> impl DoubleEndedIterator<Item = Vec<u128>> + ExactSizeIterator {
         self.rows.iter().map(|row| {
-            let mut cells = vec![0; self.shapes()];
+            let mut cells = vec![0; self.names()];
             for (&named, &touches) in row {
                 cells[named] = touches;
             }

@@ -13,6 +13,7 @@
 //!                                     -> scan         all keys in all places: the nearest, and those within a distance
 //!                                     -> Evaluation   of the model: the limit of one touch
 //!                                     -> given        the same if only some descriptors are known
+//!                                     -> Trial        answers to random touches and labelled recordings
 //!                                     -> classifiers  the paper's way: classifiers on descriptors, and templates
 //! shards of a training -> ModelMerge -> Model          the same bytes as from a training in one piece
 //! shapes + sizes                      -> Separation   the limit against size and threshold
@@ -34,6 +35,7 @@ mod scan;
 mod separation;
 mod simulation;
 mod training;
+mod trial;
 
 pub use crate::atlas::{ImprintKey, KeyTable};
 pub use answer::{Answer, AnswerState, Evidence};
@@ -50,3 +52,4 @@ pub use simulation::{MOST_TOUCHES, NoisyTouches, RecognitionRate, TouchesUntil, 
 pub use training::{
     CellPositions, GridSteps, LEAST_SIDE, Training, TrainingError, default_figures, equal_figures,
 };
+pub use trial::{RandomTouches, Tally, Trial};
