@@ -12,6 +12,15 @@ pub(crate) fn count(count: u128) -> Value {
     u64::try_from(count).map_or_else(|_| count.to_string().into(), Value::from)
 }
 
+/// A cell of a confusion table: right touches are in brackets, zero is a dot.
+pub(crate) fn cell(touches: u128, is_right: bool) -> String {
+    match (touches, is_right) {
+        (touches, true) => format!("[{touches}]"),
+        (0, false) => "· ".to_owned(),
+        (touches, false) => format!("{touches} "),
+    }
+}
+
 /// An evaluation in JSON. In `confusion`, a row is a true shape, a column the name that it is given.
 pub(crate) fn record(
     own: &Evaluation,

@@ -10,22 +10,28 @@ use std::iter;
 use clap::ArgGroup;
 use clap::builder::PossibleValuesParser;
 use serde_json::{Value, json};
+use taxel_core::imprint::Imprint;
 use taxel_core::index::wide;
 use taxel_core::parameter::number::share;
 use taxel_core::recognition::{
-    Classifier, ClassifierEvaluation, ClassifierSettings, Evaluation, GivenDescriptors, Model,
-    NamedShape, Rounding,
+    Classifier, ClassifierEvaluation, ClassifierSettings, Evaluation, Evidence, GivenDescriptors,
+    Model, NamedShape, Noise, RandomTouches, Rounding,
 };
-use taxel_files::formats::value::{csv_line, grouped, percent, percentage};
+use taxel_files::formats::name::folded;
+use taxel_files::formats::value::{counted, csv_line, grouped, percent, percentage};
 use taxel_files::formats::{ConfusionMap, json};
 use taxel_files::storage::FoundModel;
 
 use crate::cli::Context;
 use crate::cli::arguments::flags::{name_or_path, whole};
 use crate::cli::commands::model::noise::NoiseFlags;
-use crate::cli::commands::model::{Table, TableFlags, find, fits_in_table, ready, watched};
+use crate::cli::commands::model::trial::TrialReport;
+use crate::cli::commands::model::{
+    SetFlags, Table, TableFlags, find, fits_in_table, ready, watched,
+};
 use crate::cli::failure::{Failure, Named};
-use crate::cli::output::evaluation::{self, NamedBy, count, summary};
+use crate::cli::input::shapes;
+use crate::cli::output::evaluation::{self, NamedBy, cell, count, summary};
 use crate::cli::output::table::{Record, row, table};
 
 const EXAMPLES: &str = "\
@@ -68,6 +74,17 @@ pub(crate) struct Confusion {
     /// Name of a model, or its file
     #[arg(value_name = "MODEL", value_parser = name_or_path())]
     model: OsString,
+    /// Answer N touches of each shape in random poses, as 'taxel recognise' does
+    #[arg(long, value_name = "N", value_parser = whole(1..=MOST_TESTED))]
+    #[arg(conflicts_with_all = OTHERS)]
+    test: Option<u64>,
+    /// Also touch these shapes, which the model does not have: unknown is right
+    #[arg(long, value_name = "FILE.jsonl|NAME", value_parser = name_or_path(), num_args = 1..)]
+    #[arg(requires = "test")]
+    foreign: Vec<OsString>,
+    /// Taxels that may differ from the fit; by default depends on the imprint
+    #[arg(long, value_name = "K", value_parser = whole(0_u32..), requires = "test")]
+    tolerance: Option<u32>,
     /// Use only these descriptors, such as na,p
     #[arg(long, value_name = "KEY,...")]
     given: Option<GivenDescriptors>,
@@ -103,6 +120,24 @@ pub(crate) struct Confusion {
     noise: NoiseFlags,
 }
 
+/// The most shapes of a drawing, as of [`ConfusionMap`].
+const MOST_DRAWN: usize = 64;
+
+/// What does not go together with `--test`.
+const OTHERS: [&str; 8] = [
+    "given",
+    "greedy",
+    "pairs",
+    "classifier",
+    "round",
+    "dead",
+    "touches",
+    "matrix",
+];
+
+/// The most random touches of a shape: the answers to all of them are kept until they are counted.
+const MOST_TESTED: u64 = 10_000_000;
+
 const ALL: &str = "all";
 
 fn classifiers() -> PossibleValuesParser {
@@ -114,9 +149,12 @@ impl Confusion {
     pub(super) fn run(self, cx: &Context) -> Result<(), Failure> {
         self.check()?;
         let found = find(&self.model, &cx.shelf)?;
-        self.check_model(&found)?;
+        let foreign = self.foreign_shapes(found.shapes(), cx)?;
+        self.check_model(&found, foreign.len())?;
         let model = ready(found, self.table.quiet)?;
-        if let Some(noise) = self.noise.noise {
+        if let Some(each) = self.test {
+            self.tested(&model, foreign, each, cx)
+        } else if let Some(noise) = self.noise.noise {
             let rates = self.noise.rates(noise, &model, &self, cx)?;
             self.table.give(&rates, cx)
         } else if self.greedy {
@@ -146,14 +184,24 @@ impl Confusion {
     fn check(&self) -> Result<(), Failure> {
         let name = self.classifier.as_deref().unwrap_or_default();
         let is = |one: &str| name == one || name == ALL;
-        let drawn = self.noise.noise.is_some() || is("knn");
+        let drawn = self
+            .test
+            .or(self.noise.noise.map(|noise| noise.count()))
+            .is_some()
+            || is("knn");
         let with = format!("with --classifier {name}");
-        let without = "without --noise or --classifier knn, which draw touches";
+        let without = "without --test, --noise or --classifier knn, which draw touches";
         let given = self.given.as_ref();
         let known =
             |own: &Rounding| given.is_none_or(|all| all.descriptors.contains(&own.descriptor));
         let unknown = !self.round.iter().all(known);
+        let is_range = self.noise.noise.is_some_and(|noise| noise.count() > 1);
         let unused = [
+            (
+                "noise",
+                self.test.is_some() && is_range,
+                "as a range with --test, which takes one probability",
+            ),
             (
                 "neighbours",
                 self.neighbours.is_some() && !is("knn"),
@@ -177,10 +225,11 @@ impl Confusion {
 
     /// Refuses what the shapes and the sensor of a model do not allow, and a file that cannot be written: before the
     /// work, not after it.
-    fn check_model(&self, found: &FoundModel) -> Result<(), Failure> {
+    fn check_model(&self, found: &FoundModel, foreign: usize) -> Result<(), Failure> {
         let shapes = names(found.shapes());
         let is_table = self.classifier.as_deref() == Some(ALL);
-        let is_matrix = !(is_table || self.greedy || self.noise.noise.is_some());
+        let is_matrix =
+            self.test.is_some() || !(is_table || self.greedy || self.noise.noise.is_some());
         if self.pairs || is_matrix {
             let table = if self.pairs {
                 "--pairs"
@@ -191,16 +240,69 @@ impl Confusion {
         }
         self.noise.check(&found.sensor())?;
         let most = "shapes, and a drawing shows at most 64; .csv takes all";
-        let fits = !is_matrix || ConfusionMap::new(&shapes, []).is_some();
+        let fits = !is_matrix || shapes.len() + foreign <= MOST_DRAWN;
         let refused = if is_table {
             "expected a name that ends in .csv, for the table of all classifiers".to_owned()
         } else {
-            format!("{} {most}", shapes.len())
+            format!("{} {most}", shapes.len() + foreign)
         };
         match self.table.drawing().filter(|_| is_table || !fits) {
             Some(path) => Err(Failure::new(refused)).named(path.display()),
             None => self.table.check(),
         }
+    }
+
+    /// The shapes of `--foreign`. One that the model has would be counted as wrong.
+    fn foreign_shapes(
+        &self,
+        known: &[NamedShape],
+        cx: &Context,
+    ) -> Result<Vec<NamedShape>, Failure> {
+        let (what, library_all) = (self.foreign.clone(), false);
+        let foreign = shapes::read_set(&SetFlags { what, library_all }, &cx.shelf)?;
+        let is_known = |own: &&NamedShape| {
+            let mut known = known.iter();
+            known.any(|known| folded(&known.name) == folded(&own.name))
+        };
+        match foreign.iter().find(is_known) {
+            None => Ok(foreign),
+            Some(own) => {
+                let text = format!("the model has a shape named {:?}", own.name);
+                Err(Failure::new(text)).named("--foreign")
+            }
+        }
+    }
+
+    /// Answers random touches as `taxel recognise` does with the same noise and tolerance.
+    fn tested(
+        &self,
+        model: &Model,
+        foreign: Vec<NamedShape>,
+        each: u64,
+        cx: &Context,
+    ) -> Result<(), Failure> {
+        let seed = self.seed.unwrap_or_default();
+        let noise = (self.noise.noise).and_then(|noise| Noise::new(noise.value(0)).ok());
+        let answer = |touch: &Imprint| {
+            let touches = [*touch];
+            let mut evidence = Evidence::of(&touches).under(noise.as_ref());
+            evidence.tolerance = self.tolerance;
+            model.recognise(evidence)
+        };
+        let touches = RandomTouches::new(model, foreign, each, seed)?;
+        let trial = watched((touches.count(), "touches"), self.table.quiet, |progress| {
+            touches.answer(model, &answer, progress)
+        })?;
+        let report = TrialReport {
+            trial: &trial,
+            noun: "touch",
+            note: format!(
+                "{} of each shape, seed {seed}",
+                counted(each, "random touch")
+            ),
+            keys: vec![("test", each.into()), ("seed", seed.into())],
+        };
+        self.table.give(&report, cx)
     }
 
     /// The descriptors that are known instead of the imprint, if only some are.
@@ -299,11 +401,7 @@ impl Table for Matrix<'_> {
     fn text(&self) -> String {
         let &Self(own, named, classifier) = self;
         let mut rows = square(&own.labels, |row, column| {
-            match (own.confusion.get(row, column), row == column) {
-                (touches, true) => format!("[{touches}]"),
-                (0, false) => "· ".to_owned(),
-                (touches, false) => format!("{touches} "),
-            }
+            cell(own.confusion.get(row, column), row == column)
         });
         rows[0].push("recall".to_owned());
         let mut precision = vec!["precision".to_owned()];
@@ -345,7 +443,8 @@ impl Table for Matrix<'_> {
     }
 
     fn svg(&self) -> Option<String> {
-        let mut map = ConfusionMap::new(&self.0.labels, self.0.confusion.rows())?;
+        let labels = &self.0.labels;
+        let mut map = ConfusionMap::new(labels, labels, self.0.confusion.rows())?;
         map.title = format!("error {}", percent(self.0.error()));
         if let Some(certainty) = self.0.certainty {
             let certain = percent(share(certainty.touches, self.0.touches));

@@ -9,6 +9,7 @@ mod keeping;
 mod noise;
 mod separate;
 mod train;
+pub(crate) mod trial;
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -130,7 +131,7 @@ pub(crate) struct TableFlags {
 }
 
 /// An answer in its forms.
-trait Table {
+pub(crate) trait Table {
     fn text(&self) -> String;
 
     /// The lines of the CSV.
