@@ -452,7 +452,10 @@ fn recognise_steps_through_sets_and_accepts_a_name() {
     each(&[
         ("roO", "certain 100.0 %"),
         (":reco<Tab>figures-<Tab><Enter>", "model figures-30"),
-        ("rP", "with the outline of the fitted shape, once there is one"),
+        (
+            "rP",
+            "with the outline of the fitted shape, once there is one",
+        ),
         (":random-touch<Enter>", "a random touch of "),
         ("r<Enter>", "the model is ready: nothing was stopped"),
     ]);

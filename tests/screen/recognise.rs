@@ -50,10 +50,16 @@ fn a_stored_model_that_was_trained_anew_is_read_again() {
     shows(&session, &["one or other: tied"]);
     save_model(&library, &[("bar", 6.0, 2.0), ("block", 4.0, 4.0)]);
     press(&mut session, "<Esc>r");
-    shows(&session, &["model my parts", "block  >99.9 %  fits exactly", "certain"]);
+    shows(
+        &session,
+        &["model my parts", "block  >99.9 %  fits exactly", "certain"],
+    );
     save_model(&library, &[("bar", 6.0, 2.0), ("square", 4.0, 4.0)]);
     press(&mut session, ":recognise my parts<Enter>");
-    shows(&session, &["model my parts", "square  >99.9 %  fits exactly", "certain"]);
+    shows(
+        &session,
+        &["model my parts", "square  >99.9 %  fits exactly", "certain"],
+    );
     let name = Name::new("my parts").expect("a name");
     let deleted = ModelFolder::of(library.folder()).delete(&name);
     deleted.expect("deleted");
@@ -93,7 +99,10 @@ fn a_stored_model_is_completed_used_and_remembered() {
         &mut session,
         ":figure rectangle --length 4 --width 4 --x0 5 --y0 5<Enter>",
     );
-    shows(&session, &["one or other: tied; one: fits exactly", "50.0 %"]);
+    shows(
+        &session,
+        &["one or other: tied; one: fits exactly", "50.0 %"],
+    );
     // Two taxels that no shape of the model leaves.
     press(&mut session, "n<Space><Right><Right><Space>");
     shows(&session, &["none of these: nearest ", "if it were one"]);
@@ -247,10 +256,7 @@ fn escape_stops_a_training_and_enter_restarts_it() {
 
 #[test]
 fn keys_that_need_a_model_wait_for_it() {
-    for (key, text) in [
-        ("v", "Confusion: "),
-        ("t", "a random touch of "),
-    ] {
+    for (key, text) in [("v", "Confusion: "), ("t", "a random touch of ")] {
         let mut program = beside(&format!("f<Enter>r{key}"));
         shows(&program.session, &["a model is prepared first"]);
         program.until(text);

@@ -22,8 +22,10 @@ use taxel_core::matrix::Matrix;
 use taxel_core::parameter::Parameter;
 use taxel_core::parameter::number::short;
 use taxel_core::progress::stop_if;
+use taxel_core::recognition::Trial;
 use taxel_core::sensor::Sensor;
 use taxel_files::ReadError;
+use taxel_files::formats::name::folded;
 use taxel_files::formats::recording::{
     ChannelInfo, Format, FrameAnswer, RecordingEvent, RecordingNote, no_channel, unshaped,
 };
@@ -36,10 +38,13 @@ use crate::cli::arguments::flags::whole;
 use crate::cli::arguments::parameters::PitchFlag;
 use crate::cli::commands::export::{Export, KeepFlags, Kept, drawing, written};
 use crate::cli::commands::frame_flags::FrameFlags;
+use crate::cli::commands::model::Table;
+use crate::cli::commands::model::trial::TrialReport;
 use crate::cli::commands::recognise::{Namer, NamingFlags};
 use crate::cli::failure::Failure;
 use crate::cli::input::recording::{RecordingFile, damaged, noted, refused};
 use crate::cli::output::charset::Charset;
+use crate::cli::output::evaluation::count;
 use crate::cli::output::plot::heat_map;
 use crate::cli::output::report;
 use crate::cli::output::table::Record;
@@ -71,11 +76,15 @@ pub(crate) struct Frames {
     /// How often taxels flip, and which are dead or stuck
     #[arg(long, help_heading = "Frames")]
     noise_report: bool,
+    /// Count the answers of --model against the labels
+    #[arg(long, help_heading = "Recognition", requires_all = ["all", "model"])]
+    #[arg(conflicts_with_all = ["heat", "export"])]
+    expect_labels: bool,
     /// Print JSON, one line per answer
     #[arg(long, conflicts_with_all = ["heat", "csv"])]
     json: bool,
     // A table has a line for each frame and no place for other answers.
-    #[arg(long, conflicts_with_all = ["noise_report", "heat", "model", "save", "export"])]
+    #[arg(long, conflicts_with_all = ["noise_report", "heat", "save", "export"])]
     #[arg(
         help = "Print CSV, one line per frame: force, contact,\ncentre of pressure, descriptors"
     )]
@@ -112,6 +121,7 @@ Examples:
   taxel frames recording.csv --frame 3 --low 5 --high 20 --heat --ascii
   taxel frames recording.csv --peak --at-least 10 --heat --export touch.svg
   taxel frames recording.csv --peak --at-least 10 --model parts --noise 0.01
+  taxel frames recording.csv --all --at-least 10 --model parts --expect-labels
   taxel frames recording.csv --noise-report --at-least 10 --export mask.txt
   taxel frames plain.csv --rows 4 --columns 5 --label-column 21 \\
     --time-column 22:ms --crop 1,0,3x3 --json";
@@ -163,6 +173,11 @@ impl Frames {
 
     /// If an error occurs, the answers made before it are still printed.
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
+        if self.csv && self.naming.model.is_some() && !self.expect_labels {
+            return Err(Failure::usage(
+                "the argument '--csv' cannot be used with '--model <MODEL>', except with --expect-labels",
+            ));
+        }
         let kept = self.keep.kept(self.json)?;
         let to = kept.export.as_ref().map(|export| &export.path);
         if self.all && to == Some(&None) {
@@ -485,11 +500,13 @@ impl Answering<'_> {
                 // If frames are missing, the damage is the reason.
                 Err(failure) => return Err(damage.unwrap_or(failure)),
             };
-            if self.asked.csv && index == channels.start {
+            if self.asked.csv && !self.asked.expect_labels && index == channels.start {
                 self.write(FrameAnswer::csv_header())?;
             }
             answered |= if self.asked.noise_report {
                 self.report_noise(&mut recording, index, &mut pipeline)?
+            } else if let Some(namer) = self.namer.as_ref().filter(|_| self.asked.expect_labels) {
+                self.compare_labels(&mut recording, index, &mut pipeline, namer)?
             } else {
                 self.check_kept(&recording, &numbers, channel.frames)?;
                 self.answer(&mut recording, (index, channel), &numbers, &mut pipeline)?
@@ -590,7 +607,7 @@ impl Answering<'_> {
         }
         // Force and contact exist without a threshold, too. There is no default: the meaning of values differs from
         // sensor to sensor.
-        if pipeline.rule().is_none() && !self.asked.csv {
+        if pipeline.rule().is_none() && (!self.asked.csv || self.asked.expect_labels) {
             return Err(self.refused(
                 "the recording has no threshold of its own: set one with --at-least, --percent, \
                  --low and --high, or --deviations",
@@ -818,6 +835,53 @@ impl Answering<'_> {
             (Some(why), None) => Ok((None, Some(why))),
             (Some(why), Some(_)) => Err(self.refused(format!("--pitch: {why}"))),
         }
+    }
+
+    /// Names the frames of a channel that have a label and an active taxel, and counts the answers against the labels.
+    fn compare_labels(
+        &self,
+        recording: &mut RecordingFile,
+        index: usize,
+        pipeline: &mut Pipeline,
+        namer: &Namer,
+    ) -> Result<bool, Failure> {
+        let mut trial = Trial::new(&namer.model);
+        let (mut unlabelled, mut empty) = (0_u64, 0_u64);
+        self.each(recording, index, pipeline, |frame, processed| {
+            let imprint = processed.imprint.filter(|imprint| !imprint.is_empty());
+            match (&frame.label, imprint) {
+                (None, _) => unlabelled += 1,
+                (Some(_), None) => empty += 1,
+                (Some(label), Some(imprint)) => {
+                    let label = label.to_string();
+                    let own = folded(&label);
+                    let dead = processed.tared.cells_where(f64::is_nan);
+                    let answer = namer.terms.answer(&namer.model, &[imprint], Some(&dead));
+                    trial.add(&label, |name| folded(name) == own, &answer);
+                }
+            }
+            Ok(ControlFlow::Continue(()))
+        })?;
+        let labelled = trial.known.touches() + trial.foreign.touches();
+        if labelled == 0 {
+            return Err(self.refused("--expect-labels: no frame has a label and an active taxel"));
+        }
+        let report = TrialReport {
+            trial: &trial,
+            noun: "frame",
+            note: format!(
+                "left out: {} without a label, {} without an active taxel",
+                counted(unlabelled, "frame"),
+                counted(empty, "frame")
+            ),
+            keys: vec![
+                ("frames", count(labelled)),
+                ("unlabelled", unlabelled.into()),
+                ("empty", empty.into()),
+            ],
+        };
+        self.write(report.printed(self.asked.json, self.asked.csv))?;
+        Ok(true)
     }
 
     /// Reports which taxels of a channel flip or are stuck, and writes the mask of the stuck ones if a file is given.

@@ -14,8 +14,8 @@ use taxel_core::imprint::Imprint;
 use taxel_core::index::wide;
 use taxel_core::parameter::number::share;
 use taxel_core::recognition::{
-    Classifier, ClassifierEvaluation, ClassifierSettings, Evaluation, Evidence, GivenDescriptors,
-    Model, NamedShape, Noise, RandomTouches, Rounding,
+    Classifier, ClassifierEvaluation, ClassifierSettings, Evaluation, GivenDescriptors, Model,
+    NamedShape, Noise, RandomTouches, Rounding,
 };
 use taxel_files::formats::name::folded;
 use taxel_files::formats::value::{counted, csv_line, grouped, percent, percentage};
@@ -33,6 +33,7 @@ use crate::cli::failure::{Failure, Named};
 use crate::cli::input::shapes;
 use crate::cli::output::evaluation::{self, NamedBy, cell, count, summary};
 use crate::cli::output::table::{Record, row, table};
+use crate::naming::Terms;
 
 const EXAMPLES: &str = "\
 A row is a true shape, a column the name that the best classifier gives it; the
@@ -184,24 +185,14 @@ impl Confusion {
     fn check(&self) -> Result<(), Failure> {
         let name = self.classifier.as_deref().unwrap_or_default();
         let is = |one: &str| name == one || name == ALL;
-        let drawn = self
-            .test
-            .or(self.noise.noise.map(|noise| noise.count()))
-            .is_some()
-            || is("knn");
+        let drawn = self.test.is_some() || self.noise.noise.is_some() || is("knn");
         let with = format!("with --classifier {name}");
         let without = "without --test, --noise or --classifier knn, which draw touches";
         let given = self.given.as_ref();
         let known =
             |own: &Rounding| given.is_none_or(|all| all.descriptors.contains(&own.descriptor));
         let unknown = !self.round.iter().all(known);
-        let is_range = self.noise.noise.is_some_and(|noise| noise.count() > 1);
         let unused = [
-            (
-                "noise",
-                self.test.is_some() && is_range,
-                "as a range with --test, which takes one probability",
-            ),
             (
                 "neighbours",
                 self.neighbours.is_some() && !is("knn"),
@@ -217,6 +208,10 @@ impl Confusion {
             ("seed", self.seed.is_some() && !drawn, without),
             ("round", unknown, "for what --given does not name"),
         ];
+        if self.test.is_some() && self.noise.noise.is_some_and(|noise| noise.count() > 1) {
+            let text = "--noise: with --test, expected one probability, not a range";
+            return Err(Failure::usage(text));
+        }
         let unused = unused.into_iter().find(|(_, is_unused, _)| *is_unused);
         unused.map_or(Ok(()), |(flag, _, reason)| {
             Err(Failure::usage(format!("--{flag} has no effect {reason}")))
@@ -282,13 +277,12 @@ impl Confusion {
         cx: &Context,
     ) -> Result<(), Failure> {
         let seed = self.seed.unwrap_or_default();
-        let noise = (self.noise.noise).and_then(|noise| Noise::new(noise.value(0)).ok());
-        let answer = |touch: &Imprint| {
-            let touches = [*touch];
-            let mut evidence = Evidence::of(&touches).under(noise.as_ref());
-            evidence.tolerance = self.tolerance;
-            model.recognise(evidence)
+        let terms = Terms {
+            noise: (self.noise.noise).and_then(|noise| Noise::new(noise.value(0)).ok()),
+            tolerance: self.tolerance,
+            reject_below: None,
         };
+        let answer = |touch: &Imprint| terms.answer(model, &[*touch], None);
         let touches = RandomTouches::new(model, foreign, each, seed)?;
         let trial = watched((touches.count(), "touches"), self.table.quiet, |progress| {
             touches.answer(model, &answer, progress)

@@ -149,6 +149,15 @@ pub(crate) trait Table {
     fn svg(&self) -> Option<String> {
         None
     }
+
+    /// What is printed.
+    fn printed(&self, as_json: bool, as_csv: bool) -> String {
+        match (as_json, as_csv) {
+            (true, _) => self.json(),
+            (_, true) => self.csv(),
+            _ => self.text(),
+        }
+    }
 }
 
 impl TableFlags {
@@ -175,11 +184,7 @@ impl TableFlags {
                 cx.note(&written(path));
             }
         }
-        cx.print(&match (self.json, self.csv) {
-            (true, _) => table.json(),
-            (_, true) => table.csv(),
-            _ => table.text(),
-        })
+        cx.print(&table.printed(self.json, self.csv))
     }
 }
 
