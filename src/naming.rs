@@ -77,7 +77,7 @@ pub(crate) fn verdict(answer: &Answer, model: &Model) -> String {
         }
         // Without a fit, the ranking has the shapes that leave the touches in the poses of the model.
         (_, None, None) => match &answer.nearest {
-            None => "unknown: no imprint of the model fits on these taxels",
+            None => "unknown: no imprint of the model fits on a matrix of this size",
             Some(_) if !answer.ranking.is_empty() => {
                 "unknown: no shape can be fitted to this imprint"
             }

@@ -31,6 +31,8 @@ mod ties;
 
 mod properties;
 
+mod answers;
+
 mod recognition;
 
 mod noise;

@@ -6,7 +6,7 @@ use taxel_core::prelude::*;
 use taxel_core::progress::ToTheEnd;
 use taxel_core::recognition::{
     AnswerState, Classifier, ClassifierSettings, Evaluation, Evidence, GivenDescriptors,
-    ImprintKey, KeyTable, Model, ModelError, ModelHead, ModelMerge, NamedShape, Rounding,
+    ImprintKey, KeyTable, Model, ModelError, ModelHead, ModelMerge, NamedShape, Noise, Rounding,
     SearchMethod, ShapeCount, ShapeDescriptor, SizeAxis, Training, TrainingError,
 };
 use taxel_core::sweep::{Shard, ShardOrderError};
@@ -34,6 +34,11 @@ pub(crate) fn ranges(x0: &str, y0: &str, angle: &str) -> Ranges {
         .with(Axis::X0, x0.parse().expect("a range"))
         .with(Axis::Y0, y0.parse().expect("a range"))
         .with(Axis::Angle, angle.parse().expect("a range"))
+}
+
+/// Touches of which only the poses of the model count.
+fn exactly(touches: &[Imprint]) -> Evidence<'_> {
+    Evidence::of(touches).under(&Noise::new(0.0).expect("in range"))
 }
 
 /// The grid of the published numbers.
@@ -359,7 +364,7 @@ fn of_equally_good_descriptors_the_first_in_the_table_is_chosen() {
 fn answers_say_how_far_they_can_be_trusted() {
     let model = train(s4(), 32, published());
     let read = |text: &str| text.parse::<Imprint>().expect("an imprint");
-    let recognise = |touch: &Imprint| model.recognise(Evidence::of(std::slice::from_ref(touch)));
+    let recognise = |touch: &Imprint| model.recognise(exactly(std::slice::from_ref(touch)));
 
     let square = read("......\n.####.\n.####.\n.####.\n.####.\n......");
     let answer = recognise(&square);
@@ -385,14 +390,14 @@ fn answers_say_how_far_they_can_be_trusted() {
     assert!(answer.ranking.windows(2).all(|pair| pair[0].1 >= pair[1].1));
     let best = answer.ranking[0].1;
     let touches = [bar];
-    let mut strict = Evidence::of(&touches);
+    let mut strict = exactly(&touches);
     strict.reject_below = Some(best + 0.01);
     let strict = model.recognise(strict);
     assert_eq!((strict.state, strict.shape), (AnswerState::Rejected, None));
 
     // Two equal touches count twice.
     let twice = [bar, bar];
-    let answer = model.recognise(Evidence::of(&twice));
+    let answer = model.recognise(exactly(&twice));
     let counts = model.counts_of(&bar);
     let squares: f64 = counts.iter().map(|count| float(count.poses).powi(2)).sum();
     for &(shape, probability) in &answer.ranking {
@@ -405,11 +410,11 @@ fn answers_say_how_far_they_can_be_trusted() {
     // However often this touch is repeated, the other shapes can leave it, too; but their probability is smaller than
     // any `f64`.
     let often = vec![bar; 20_000];
-    let answer = model.recognise(Evidence::of(&often));
+    let answer = model.recognise(exactly(&often));
     assert_eq!(answer.ranking.len(), 1);
     assert_eq!(answer.state, AnswerState::Likely);
     // No shape can leave touches that contradict each other.
-    let answer = model.recognise(Evidence::of(&[bar, square]));
+    let answer = model.recognise(exactly(&[bar, square]));
     assert_eq!(
         (answer.state, answer.shape, answer.ranking.len()),
         (AnswerState::Unknown, None, 0)
@@ -426,7 +431,7 @@ fn the_nearest_imprint_of_an_unknown_one_is_found() {
         shifted.set_word(row, 0b0111_1110 << 1);
     }
     shifted.toggle(10, 7);
-    let answer = model.recognise(Evidence::of(std::slice::from_ref(&shifted)));
+    let answer = model.recognise(exactly(std::slice::from_ref(&shifted)));
     assert_eq!(answer.state, AnswerState::Unknown);
     let nearest = model.nearest(&shifted).expect("keys fit");
     assert_eq!(nearest.distance, 1);
@@ -480,19 +485,19 @@ fn two_names_for_one_shape_can_never_be_told_apart() {
     let limit = Evaluation::of(&model);
     assert_eq!((limit.recall(1), limit.precision(1)), (Some(0.0), None));
     let bar: Imprint = ".....\n.###.\n.###.\n.....".parse().expect("an imprint");
-    let answer = model.recognise(Evidence::of(&[bar]));
+    let answer = model.recognise(exactly(&[bar]));
     assert_eq!(
         (answer.state, answer.shape, answer.tied.as_slice()),
         (AnswerState::Tied, Some(0), [0, 1].as_slice())
     );
     // If one of several touches is at the rim, it may be cut off.
     let rim: Imprint = "###\n###\n...".parse().expect("an imprint");
-    let at_rim = |touches: &[Imprint]| model.recognise(Evidence::of(touches)).at_rim;
+    let at_rim = |touches: &[Imprint]| model.recognise(exactly(touches)).at_rim;
     assert!(at_rim(&[bar, rim]) && at_rim(&[rim, bar]) && !at_rim(&[bar, bar]));
     // A probability that just reaches the limit is not rejected.
     let rejecting = |least| {
         let touches = [bar];
-        let mut evidence = Evidence::of(&touches);
+        let mut evidence = exactly(&touches);
         evidence.reject_below = Some(least);
         model.recognise(evidence)
     };
@@ -514,7 +519,7 @@ fn a_shape_that_may_leave_an_empty_imprint_is_named_by_its_template() {
     let shapes = vec![shape("bar", (3.0, 1.0)), shape("dot", (0.5, 0.5))];
     let model = train(shapes, 16, ranges("5:5.9:0.1", "5:5.9:0.1", "0"));
     let nothing = Imprint::empty(size(16, 16));
-    assert_eq!(model.recognise(Evidence::of(&[nothing])).shape, Some(1));
+    assert_eq!(model.recognise(exactly(&[nothing])).shape, Some(1));
     let settings = ClassifierSettings::default();
     let reached = Classifier::Template.evaluate(&model, &settings, &ToTheEnd);
     let reached = reached.expect("not stopped");

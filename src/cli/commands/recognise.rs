@@ -41,12 +41,17 @@ const EXAMPLES: &str = r#"Reads an imprint in any format that 'taxel describe' r
   {"frame":[[0,12],...],"at_least":10}  a sensor's values, and a threshold as
                                         for 'taxel batch'
 Each line gets one line as its answer, with a copy of the line's frame number,
-label, time and channel; other keys are ignored. An imprint at the rim may be
-cut off, so it is never 'certain'. With --noise, even an imprint that no shape
-leaves gets a name: it is compared with every imprint of the model, in every
-place on the matrix. With --expect, the exit status is 3 if the answer is
-another shape, or is tied, rejected or unknown; if some lines cannot be
-answered, it is 1.
+label, time and channel; other keys are ignored.
+
+The likeliest shapes are moved and turned until they leave nearly the imprint.
+The one that fits best is the answer, unless more taxels differ than --tolerance
+allows: then it is none of these. The search may miss a better fit. The place of
+a fit is that of 'taxel figure' and 'taxel picture': x0, y0, angle. An imprint
+at the rim may be cut off, so it is never 'certain'. With --noise 0, nothing is
+fitted: the answer is a shape that leaves just this imprint in a trained pose.
+
+With --expect, the exit status is 3 if the answer is another shape, or is tied,
+rejected or unknown; if some lines cannot be answered, it is 1.
 
 Built-in models: 'library', all shapes of the library; 'shapes', those that come
 with taxel; 'figures', the seven figures at their default sizes; 'figures-30',
@@ -57,7 +62,7 @@ Examples:
   taxel recognise washer --model shipped.npz --top 3
   taxel batch < poses.jsonl | taxel recognise - --model parts
   taxel recognise imprint.txt --model parts --expect disc --reject 0.9
-  taxel recognise imprint.txt --model parts --noise 0.01"#;
+  taxel recognise imprint.txt --model parts --noise 0.02 --mask dead.txt"#;
 
 /// Name the shape that left an imprint
 #[derive(Debug, clap::Args)]
@@ -121,10 +126,10 @@ impl NamingFlags {
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct TermsFlags {
-    /// Each taxel flips with this probability (below 0.5); with 0 only trained poses count
+    /// Each taxel flips with this probability (below 0.5); 0 allows trained poses only
     #[arg(long, value_name = "E", value_parser = noise)]
     noise: Option<Noise>,
-    /// Taxels that may differ from a shape that fits; more for large imprints and noise unless given
+    /// A shape fits if at most K taxels differ; default 2 or more, by outline and noise
     #[arg(long, value_name = "K", value_parser = whole(0_u32..))]
     tolerance: Option<u32>,
 }

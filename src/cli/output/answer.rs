@@ -142,7 +142,7 @@ impl Recognition<'_> {
             (Some(pose), _) => text += &pose.text(),
             (None, Some(shape)) if self.namer.asks_pose => {
                 let name = self.name(shape);
-                text += &format!("{name} leaves this imprint in none of the poses of a grid\n");
+                text += &format!("no pose that was tried leaves exactly this imprint of {name}\n");
             }
             _ => {}
         }

@@ -120,6 +120,21 @@ impl DecimalRange {
             .then(|| Self::from_units(self.start, step, self.places, self.count.div_ceil(stride)))
     }
 
+    /// Returns a finer range that has all these values: divides the steps evenly so that they are at most `most`, and
+    /// goes on to just before the value after the last. A single value stays alone. None if a number gets too long.
+    pub(crate) fn divided(&self, most: f64) -> Option<Self> {
+        if self.count == 1 || self.step() <= most {
+            return Some(*self);
+        }
+        // Most steps can be divided with two more decimals.
+        let places = Some(self.places + 2).filter(|&places| places <= MAX_PLACES)?;
+        let (start, step) = (self.start.checked_mul(100)?, self.step.checked_mul(100)?);
+        let is_fine = |parts: &i64| step % parts == 0 && scaled(step / parts, places) <= most;
+        let parts = (1..=step).find(is_fine)?;
+        let count = self.count.checked_mul(parts.unsigned_abs())?;
+        Some(Self::from_units(start, step / parts, places, count))
+    }
+
     /// Iterates over all values in order.
     pub fn values(&self) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator {
         (0..narrow(self.count)).map(|index| self.value(index.into()))
@@ -291,6 +306,22 @@ mod tests {
         }
         assert!(DecimalRange::new(2.0, 1.0, 0.5).is_err());
         assert!(DecimalRange::new(1.0, 2.0, -0.5).is_err());
+    }
+
+    #[test]
+    fn a_finer_range_goes_on_to_just_before_the_next_value() {
+        for (range, most, expected) in [
+            ("7.6:8.4:0.2", 0.05, "7.6:8.55:0.05"),
+            ("0:357:3", 1.0, "0:359:1"),
+            ("0:0.75:0.25", 0.05, "0:0.95:0.05"),
+            ("0:0.9:0.3", 0.04, "0:1.17:0.03"),
+            ("0:359:1", 1.0, "0:359:1"),
+            ("4.5", 0.05, "4.5"),
+        ] {
+            let range: DecimalRange = range.parse().expect("a range");
+            let finer = range.divided(most).expect("few digits");
+            assert_eq!(finer.to_string(), expected, "{range}");
+        }
     }
 
     #[test]

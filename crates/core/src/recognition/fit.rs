@@ -143,7 +143,7 @@ impl StartPoses {
 }
 
 /// Returns the values of a range that lie within `span` of the first, in the largest multiple of its step up to `most`.
-fn thinned(range: DecimalRange, most: f64, span: f64) -> Option<DecimalRange> {
+pub(super) fn thinned(range: DecimalRange, most: f64, span: f64) -> Option<DecimalRange> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

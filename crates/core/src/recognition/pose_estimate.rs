@@ -1,17 +1,18 @@
 use crate::atlas::ImprintKey;
 use crate::imprint::Imprint;
 use crate::index::narrow;
-use crate::pose::{Axis, PoseGrid, exact_period};
+use crate::pose::{Axis, PoseGrid, Ranges, exact_period};
 use crate::progress::Progress;
+use crate::recognition::fit::thinned;
 use crate::recognition::model::{Model, float};
 use crate::source::Source;
-use crate::sweep::Sweep;
+use crate::sweep::{Shard, Sweep};
 use crate::touch::Plane;
 
 /// A summary of the poses in which a shape leaves an imprint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseEstimate {
-    /// The number of poses of the model that leave the imprint.
+    /// The number of poses that leave the imprint, of those that were tried.
     pub poses: u64,
     /// The mean position x, y of the centre, about which the shape turns, in cells on the matrix of the imprint.
     pub position: [f64; 2],
@@ -74,10 +75,20 @@ fn whole_degrees(period: f64) -> u32 {
     period.ceil() as u32
 }
 
+/// The largest steps between the poses that are tried for an imprint that no pose of the model leaves, and how far
+/// they go: a whole cell further, the keys repeat.
+const FINE_STEPS: [(Axis, f64, f64); 3] = [
+    (Axis::X0, 0.05, 1.0),
+    (Axis::Y0, 0.05, 1.0),
+    (Axis::Angle, 1.0, 360.0),
+];
+
 impl Model {
-    /// Finds the poses in which a shape leaves an imprint, by touching with the shape in every pose of the model.
-    /// Of a shard, only its own poses count. `progress` is called as by [`Sweep::with_progress`]. None if there is no
-    /// such shape, if it does not leave the imprint, if the imprint is empty, or if it was stopped.
+    /// Finds the poses in which a shape leaves an imprint, by touching with the shape in every pose of the model. If it
+    /// leaves the imprint in none of them, finer poses of the same ranges are tried: at most 0.05 cells and 1° apart, up
+    /// to just before the value after the last one, but within a cell. Of a shard, only its own poses count, and none in between.
+    /// `progress` is called as by [`Sweep::with_progress`]. None if there is no such shape, if it leaves the imprint in
+    /// none of these poses, if the imprint is empty, or if it was stopped.
     pub fn pose_of(
         &self,
         shape: usize,
@@ -98,11 +109,31 @@ impl Model {
         most: usize,
         progress: &dyn Progress,
     ) -> Option<(PoseEstimate, Vec<PlacedSource>)> {
+        let known = self.poses_in(*self.ranges(), shape, imprint, most, progress);
+        known.or_else(|| {
+            let mut ranges = *self.ranges();
+            for (axis, most, span) in FINE_STEPS {
+                ranges[axis] = thinned(ranges[axis].divided(most)?, most, span)?;
+            }
+            let is_finer = ranges != *self.ranges() && self.shard() == Shard::WHOLE;
+            is_finer.then(|| self.poses_in(ranges, shape, imprint, most, progress))?
+        })
+    }
+
+    /// Returns the same of the poses in these ranges.
+    fn poses_in(
+        &self,
+        ranges: Ranges,
+        shape: usize,
+        imprint: &Imprint,
+        most: usize,
+        progress: &dyn Progress,
+    ) -> Option<(PoseEstimate, Vec<PlacedSource>)> {
         let bounds = imprint.bounds()?;
         let key = ImprintKey::of(imprint);
         let source = self.shapes().get(shape)?.source.clone();
-        let period = exact_period(&source, self.ranges());
-        let grid = PoseGrid::new(source, *self.sensor(), self.anchor(), *self.ranges()).ok()?;
+        let period = exact_period(&source, &ranges);
+        let grid = PoseGrid::new(source, *self.sensor(), self.anchor(), ranges).ok()?;
         let wanted = |other: &Imprint| ImprintKey::of(other) == key;
         let sweep = Sweep::new(&grid)
             .with_shard(self.shard())
@@ -326,7 +357,6 @@ mod tests {
     use crate::recognition::model::ShapeCount;
     use crate::recognition::training::{GridSteps, Training, equal_figures};
     use crate::sensor::MatrixSize;
-    use crate::sweep::Shard;
 
     #[test]
     fn the_poses_of_an_imprint_agree_with_its_count_and_with_a_sum_by_hand() {
@@ -388,6 +418,35 @@ mod tests {
             model.pose_of(7, &Imprint::empty(MatrixSize::of(4, 4)), &ToTheEnd),
             None
         );
+    }
+
+    /// A grid of half cells and 15° holds few imprints; finer poses leave what it does not hold.
+    #[test]
+    fn an_imprint_between_the_poses_of_the_model_has_a_pose() {
+        let training = |steps| Training::fitting(equal_figures(), steps).expect("they fit");
+        let grid = training(GridSteps::of(20, "0:359:1")).grids()[1].clone();
+        let model = training(GridSteps::of(2, "0:345:15"))
+            .run()
+            .expect("not stopped");
+        let fine = training(GridSteps::of(20, "0:359:1"))
+            .run()
+            .expect("not stopped");
+        let mut plane = Plane::new(*grid.sensor());
+        let (mut between, mut pose) = (0, 4321);
+        while between < 5 {
+            pose += 991;
+            let imprint = plane.touch(&grid.placed(pose));
+            if model.counts_of(&imprint).iter().any(|own| own.shape == 1) {
+                continue;
+            }
+            between += 1;
+            let [estimate, expected] = [&model, &fine].map(|model| {
+                let pose = model.pose_of(1, &imprint, &ToTheEnd);
+                pose.expect("a fine pose leaves it")
+            });
+            assert_eq!(estimate.poses, expected.poses);
+            assert!((estimate.position[0] - expected.position[0]).abs() < 1e-9);
+        }
     }
 
     #[test]
