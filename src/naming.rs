@@ -64,8 +64,8 @@ pub(crate) fn verdict(answer: &Answer, model: &Model) -> String {
         (AnswerState::Rejected, ..) => {
             let likeliest = answer.ranking.first().map(|&(shape, _)| shape);
             let shape = answer.fit.as_ref().map(|fit| fit.shape).or(likeliest);
-            let shape = shape.map(|shape| format!("{}  {}", name(shape), likely(shape)));
-            format!("rejected: {}{fit}", shape.unwrap_or_default())
+            let (name, likely) = shape.map_or(("", String::new()), |own| (name(own), likely(own)));
+            format!("rejected: {name} reaches only {likely}{fit}")
         }
         (AnswerState::Certain, Some(shape), _) => {
             format!("{}  {}{fit}  certain", name(shape), likely(shape))
@@ -79,7 +79,7 @@ pub(crate) fn verdict(answer: &Answer, model: &Model) -> String {
         (_, None, None) => match &answer.nearest {
             None => "unknown: no imprint of the model fits on a matrix of this size",
             Some(_) if !answer.ranking.is_empty() => {
-                "unknown: no shape can be fitted to this imprint"
+                "unknown: no shape could be fitted; perhaps an imprint is empty"
             }
             Some(nearest) if nearest.distance > 0 => "unknown: no trained pose leaves this imprint",
             Some(_) => "unknown: no shape leaves all of these imprints in its trained poses",

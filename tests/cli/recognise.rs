@@ -38,6 +38,10 @@ fn touches_are_answered_in_words_and_as_json() {
         "odd.txt",
         "........\n.######.\n.#####..\n.######.\n........\n",
     );
+    place.write(
+        "square8.txt",
+        "........\n...##...\n...##...\n........\n........\n",
+    );
     place.write("noisy.txt", &BAR.replacen("........\n", "#.......\n", 1));
     place.write("twins.jsonl", "{\"name\":\"one\",\"figure\":\"rectangle\",\"length\":4,\"width\":4}\n{\"name\":\"two\",\"figure\":\"rectangle\",\"length\":4,\"width\":4}\n");
     place.done(&format!("model train twins.jsonl {COARSE} --name twins"));
@@ -51,6 +55,8 @@ fn touches_are_answered_in_words_and_as_json() {
         "bar.txt --model r --noise 0.01",
         "cut.txt --model r --json",
         "odd.txt --model r --ascii",
+        "odd.txt --model r --noise 0 --ascii",
+        "odd.txt --model r --mask square8.txt --tolerance 0",
         "speck.txt --model r",
         "speck.txt --model r --noise 0.01 --pose --json",
         "square.txt --model twins",
@@ -65,25 +71,108 @@ fn touches_are_answered_in_words_and_as_json() {
 }
 
 #[test]
-fn a_touch_that_noise_does_not_explain_is_doubted() {
+fn a_touch_that_no_shape_fits_is_none_of_these() {
     let place = place();
     // A square with two corners missing, and a cross that no rectangle resembles.
-    let near = "......\n..###.\n.####.\n.####.\n.###..\n......\n";
-    let cross = "...........\n.....#.....\n.....#.....\n.....#.....\n.....#.....\n.#########.\n\
-                 .....#.....\n.....#.....\n.....#.....\n.....#.....\n...........\n";
-    let doubt = "about 1 is expected at this noise: perhaps none of these shapes\n";
-    for (touch, is_doubted) in [(near, false), (cross, true)] {
-        let run = place.run("recognise - --model r --noise 0.01", touch);
-        let text = run.stdout;
-        assert!(text.contains("taxels differ\n"), "{text}");
-        assert_eq!(text.contains(doubt), is_doubted, "{text}");
+    place.write(
+        "near.txt",
+        "......\n..###.\n.####.\n.####.\n.###..\n......\n",
+    );
+    place.write(
+        "cross.txt",
+        "...........\n.....#.....\n.....#.....\n.....#.....\n.....#.....\n.#########.\n\
+         .....#.....\n.....#.....\n.....#.....\n.....#.....\n...........\n",
+    );
+    for (line, expected) in [
+        ("near.txt", "d  "),
+        ("near.txt --tolerance 0", "none of these: nearest d, "),
+        ("near.txt --noise 0", "unknown: no trained pose leaves this"),
+        ("cross.txt", "none of these: nearest "),
+        ("cross.txt --noise 0.01", "none of these: nearest "),
+        ("cross.txt --tolerance 30", "d  "),
+        ("near.txt --mask near.txt", "d  "),
+    ] {
+        let text = place.done(&format!("recognise {line} --model r"));
+        assert!(text.starts_with(expected), "{line}: {text}");
     }
-    // Without `--noise`, and with a noise of 0, nothing is named.
-    for flags in ["", "--noise 0"] {
-        let run = place.run(&format!("recognise - --model r {flags}"), cross);
-        assert!(run.stdout.starts_with("unknown: "), "{}", run.stdout);
-        assert!(!run.stdout.contains("perhaps"), "{}", run.stdout);
+}
+
+/// The position, the angle and the zooms of a fit are those of other commands, to the last digit.
+#[test]
+fn a_fit_touched_again_differs_in_as_many_taxels_as_it_states() {
+    let place = Place::new();
+    let disc = r#""figure":"ellipse","radius_x":3.2,"radius_y":2.1"#;
+    let key = r#""picture":"key""#;
+    let washer = r#""picture":"washer""#;
+    fitted_again(&place, &[("disc", disc), ("key", key)], "");
+    fitted_again(
+        &place,
+        &[("washer", washer), ("key", key)],
+        "--zoom-x 1:1.2:0.2 --zoom-y 0.9",
+    );
+}
+
+/// Touches with these shapes, recognises the touches, and touches with the fits.
+fn fitted_again(place: &Place, shapes: &[(&str, &str)], zooms: &str) {
+    let read = |text: &str| -> Vec<Value> {
+        let lines = text.lines();
+        lines
+            .map(|line| serde_json::from_str(line).expect("JSON"))
+            .collect()
+    };
+    let taxels = |value: &Value| -> Vec<u8> {
+        let rows = value["imprint"].as_array().expect("rows").iter();
+        rows.flat_map(|row| row.as_str().expect("a row").bytes())
+            .collect()
+    };
+    let lines = shapes
+        .iter()
+        .map(|(name, shape)| format!("{{\"name\":\"{name}\",{shape}}}\n"));
+    place.write("set.jsonl", &lines.collect::<String>());
+    let train = "model train set.jsonl --positions 5 --angle 0:357:3 --threshold 0.4";
+    place.done(&format!("{train} {zooms} --out m.npz --force --quiet"));
+    let mut poses = String::new();
+    for number in 0..24 {
+        let [x0, y0, angle] = [0.37, 0.53, 17.3].map(|step| step * f64::from(number));
+        let shape = shapes[number as usize % 2].1;
+        let (x0, y0, angle) = (6.0 + x0 % 3.0, 5.0 + y0 % 4.0, angle % 360.0);
+        poses += &format!("{{{shape},\"x0\":{x0},\"y0\":{y0},\"angle\":{angle}");
+        poses += match (shape.contains("picture"), zooms) {
+            (false, _) => "}\n",
+            (true, "") => ",\"zoom_x\":1,\"zoom_y\":1}\n",
+            (true, _) => ",\"zoom_x\":1.2,\"zoom_y\":0.9}\n",
+        };
     }
+    let batch = "batch --columns 26 --rows 24 --threshold 0.4";
+    let touched = place.run(batch, &poses).stdout;
+    let answers = [1, 4].map(|jobs| {
+        let line = format!("recognise - --model m.npz --jobs {jobs}");
+        place.run(&line, &touched).stdout
+    });
+    assert_eq!(answers[0], answers[1]);
+    let answers = read(&answers[0]);
+    let mut fits = String::new();
+    for answer in &answers {
+        let mut fit = answer["fit"].as_object().expect("a fit").clone();
+        let shape = shapes.iter().find(|(name, _)| fit["name"] == *name);
+        let shape = shape.expect("one of the set").1;
+        assert_eq!(fit.contains_key("zoom_x"), !zooms.is_empty(), "{answer}");
+        if zooms.is_empty() && shape.contains("picture") {
+            fit.extend(["zoom_x", "zoom_y"].map(|zoom| (zoom.to_owned(), 1.into())));
+        }
+        fit.retain(|key, _| key != "name" && key != "differs");
+        let keys = Value::Object(fit).to_string();
+        fits += &format!("{{{shape},{}\n", &keys[1..]);
+    }
+    let again = read(&place.run(batch, &fits).stdout);
+    let mut exact = 0;
+    for ((answer, again), touched) in answers.iter().zip(again).zip(read(&touched)) {
+        let pairs = taxels(&again).into_iter().zip(taxels(&touched));
+        let differs = pairs.filter(|(one, other)| one != other).count();
+        assert_eq!(answer["fit"]["differs"], differs, "{answer}");
+        exact += u32::from(differs == 0);
+    }
+    assert!((18..=24).contains(&exact), "{exact}");
 }
 
 #[test]
@@ -97,7 +186,8 @@ fn the_exit_status_says_whether_the_answer_was_expected() {
         "square.txt --model r --expect disc",
         "square.txt --model nobody",
         "nothing.txt --model r",
-        "square.txt --model r --noise 0.01 --mask bar.txt",
+        "square.txt --model r --mask bar.txt",
+        "square.txt --model r --noise 0 --tolerance 1",
     ];
     insta::assert_snapshot!("expected", place.transcript("recognise", &lines));
     // Lines: one that is not as expected, and one that is invalid, which takes precedence.
@@ -220,9 +310,12 @@ fn a_pose_is_given_in_cells_degrees_and_mm() {
         "{\"name\":\"tiny\",\"figure\":\"ellipse\",\"radius_x\":0.1,\"radius_y\":0.1}\n",
     );
     place.done(&format!("model train tiny.jsonl {COARSE} --name tiny"));
-    let empty = place.run("recognise - --model tiny --pose", "....\n....\n");
-    let said = "no pose of the model is known for this imprint\n";
-    assert!(empty.stdout.ends_with(said), "{}", empty.stdout);
+    let empty = place.run("recognise - --model tiny --noise 0", "....\n....\n");
+    assert!(
+        empty.stdout.starts_with("tiny  100.0 %  certain\n"),
+        "{}",
+        empty.stdout
+    );
     // A single degree is said once.
     place.write(
         "b.jsonl",
@@ -364,7 +457,7 @@ fn frames_are_named_by_a_model() {
     );
     assert_eq!(framed["frame"], Value::Null);
     let text = place.done("frames touch.jsonl --peak --at-least 5 --model r");
-    assert!(text.contains("d: certain"), "{text}");
+    assert!(text.contains("\nd  >99.9 %  fits exactly at "), "{text}");
     for line in [
         "watch touch.jsonl --once",
         "frames touch.jsonl --peak --at-least 5",

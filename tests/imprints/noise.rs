@@ -398,6 +398,10 @@ fn posteriors_agree_with_independent_ones() {
         let imprint = Imprint::from_rows(rows).expect("an imprint");
         let noise = Noise::new(case["noise"].as_f64().expect("a number")).expect("in range");
         let posterior = model.posterior_under(&imprint, &noise).expect("keys fit");
+        let answer = model.recognise(Evidence::of(&[imprint]).under(&noise));
+        for (shape, probability) in answer.ranking {
+            assert!((posterior[shape] - probability).abs() < 1e-9, "{shape}");
+        }
         for (shape, found) in model.shapes().iter().zip(posterior) {
             let expected = case["posterior"][&shape.name].as_f64().expect("a number");
             assert!(

@@ -180,7 +180,7 @@ pub(crate) struct Namer {
     pub(crate) terms: Terms,
     /// The dead taxels.
     mask: Option<Imprint>,
-    /// The number of shapes of the ranking that are shown; None for eight in words and all in JSON.
+    /// The number of shapes of the ranking that are shown; None for the likely ones in words and all in JSON.
     pub(crate) top: Option<usize>,
     pub(crate) asks_pose: bool,
     /// The pitch for poses, if it is known.

@@ -17,7 +17,9 @@ use crate::cli::output::table::bar;
 use crate::naming::verdict;
 use crate::tui::widget::plot::DotCanvas;
 
+/// The most shapes in words, and the least probability of those after the first, unless their number is given.
 const SHOWN: usize = 8;
+const LEAST: f64 = 0.001;
 
 const BAR: usize = 30;
 
@@ -128,7 +130,12 @@ impl Recognition<'_> {
         if answer.at_rim {
             text += "the imprint reaches the rim of the matrix: it may be cut off\n";
         }
-        let top = self.namer.top.unwrap_or(SHOWN);
+        if answer.state == AnswerState::Unknown && !answer.ranking.is_empty() {
+            text += "if it were one of these:\n";
+        }
+        let worth = |&&(_, probability): &&(usize, f64)| probability >= LEAST;
+        let usual = answer.ranking.iter().take(SHOWN).take_while(worth).count();
+        let top = self.namer.top.unwrap_or(usual.max(1));
         let shown = answer.ranking.iter().take(top);
         let names = Charset::current().column(shown.clone().map(|&(shape, _)| self.name(shape)));
         for (name, &(_, probability)) in names.iter().zip(shown) {
@@ -142,7 +149,9 @@ impl Recognition<'_> {
             (Some(pose), _) => text += &pose.text(),
             (None, Some(shape)) if self.namer.asks_pose => {
                 let name = self.name(shape);
-                text += &format!("no pose that was tried leaves exactly this imprint of {name}\n");
+                text += &format!(
+                    "{name} leaves exactly this imprint in none of the poses that were tried\n"
+                );
             }
             _ => {}
         }
