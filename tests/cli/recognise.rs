@@ -372,14 +372,32 @@ fn a_heptagon_repeats_every_seventh_of_a_turn() {
 }
 
 #[test]
-fn the_seven_figures_are_built_in() {
+fn every_stored_shape_is_known_without_a_model() {
     let place = Place::new();
-    let touched = place.done("figure hexagon --side 4 --x0 5.3 --y0 5.1 --angle 12 --json");
-    let known = answer(&place.run("recognise -", &touched));
-    assert_eq!(
-        (&known["answer"], &known["state"]),
-        (&"hexagon".into(), &"certain".into())
-    );
+    place.done("figure triangle --side 9.3 --thickness 1.6 --save mine");
+    place.write("library/broken.json", "{");
+    for (shape, status) in [("mine", 0), ("gear", 3)] {
+        let pose = "--columns 24 --rows 24 --x0 5.3 --y0 6.6 --angle 71 --json";
+        let touched = place.done(&format!("picture {shape} {pose}"));
+        let run = place.run("recognise - --expect mine", &touched);
+        assert_eq!(run.status, Some(status), "{}", run.stderr);
+        let left_out = "left out: broken (unreadable)\n";
+        assert!(run.stderr.starts_with(left_out), "{}", run.stderr);
+        let known: Value = serde_json::from_str(&run.stdout).expect("a line of JSON");
+        assert_eq!(known["answer"], shape);
+        // The same touch as a frame of a sensor.
+        let touch: Value = serde_json::from_str(&touched).expect("a line of JSON");
+        let row = |row: &Value| -> Vec<u8> {
+            let row = row.as_str().unwrap_or_default().bytes();
+            row.map(|taxel| u8::from(taxel == b'#')).collect()
+        };
+        let rows = touch["imprint"].as_array().expect("rows").iter();
+        let frame = serde_json::json!({"frame": rows.map(row).collect::<Vec<_>>()});
+        let flags = "frames - --frame 0 --json --at-least 1 --model";
+        let named = place.run(flags, &format!("{frame}\n"));
+        let named: Value = serde_json::from_str(&named.stdout).expect("a line of JSON");
+        assert_eq!(named["recognition"]["answer"], shape, "{named}");
+    }
     let card = place.done("model show figures");
     assert!(card.contains("hexagon: hexagon side 4.00"), "{card}");
 }
