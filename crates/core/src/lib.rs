@@ -53,7 +53,7 @@
 //!  imprint      the binary matrix: one u64 per row
 //!  matrix       one value per taxel
 //!  values       the values of a shape's parameters
-//!  figure  picture  source        the shapes that touch: seven figures, a stored imprint
+//!  figure  picture  outline  source        the shapes that touch: seven figures, a stored imprint, rings
 //!  touch        shape + sensor -> coverage of each taxel -> imprint
 //!  description  imprint -> regions -> DESCRIPTORS
 //!  frame        the measurements of a real sensor: crop, tare, gain, threshold -> imprint
@@ -88,6 +88,7 @@ pub mod imprint;
 pub mod index;
 pub mod lock;
 pub mod matrix;
+pub mod outline;
 pub mod parameter;
 pub mod picture;
 pub mod pose;

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::figure::FigureKind;
 use crate::frame::{Rule, SetRule};
 use crate::imprint::Imprint;
+use crate::outline::{EllipseRing, Ring};
 use crate::sensor::MAX_SIDE;
 use crate::source::Source;
 
@@ -21,6 +22,12 @@ impl Serialize for Source {
         match self {
             Self::Figure(figure) => map.serialize_entry("figure", figure.kind().name())?,
             Self::Picture(picture) => map.serialize_entry("picture", picture.imprint())?,
+            Self::Outline(outline) => {
+                map.serialize_entry("outline", outline.rings())?;
+                if outline.pitch_mm().is_some() {
+                    map.serialize_entry("unit", "mm")?;
+                }
+            }
         }
         for &parameter in self.parameters() {
             if let Some(value) = self.get(parameter) {
@@ -28,6 +35,29 @@ impl Serialize for Source {
             }
         }
         map.end()
+    }
+}
+
+/// A polygon is a list of its points, an ellipse an object.
+impl Serialize for Ring {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Polygon(points) => points.serialize(serializer),
+            Self::Ellipse(EllipseRing {
+                centre: [cx, cy],
+                radii: [rx, ry],
+                angle,
+            }) => {
+                let mut map = serializer.serialize_map(None)?;
+                for (key, value) in [("cx", cx), ("cy", cy), ("rx", rx), ("ry", ry)] {
+                    map.serialize_entry(key, value)?;
+                }
+                if *angle != 0.0 {
+                    map.serialize_entry("angle", angle)?;
+                }
+                map.end()
+            }
+        }
     }
 }
 

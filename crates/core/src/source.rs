@@ -1,4 +1,4 @@
-//! The source of an imprint: a figure or a picture. An imprint drawn by hand has no source.
+//! The source of an imprint: a figure, a picture or an outline. An imprint drawn by hand has no source.
 //!
 //! All that tells the kinds of shapes apart is asked here; what uses a shape asks it to draw itself ([`Solid`]).
 
@@ -6,12 +6,13 @@ use std::fmt;
 
 use crate::figure::{Figure, FigureKind};
 use crate::geometry::{Pen, Real, Solid};
+use crate::outline::Outline;
 use crate::parameter::{Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
 use crate::sensor::Sensor;
 use crate::values::Values;
 
-/// A figure or a picture, including its position, angle and zoom.
+/// A figure, a picture or an outline, including its position, angle and zoom.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(
     clippy::large_enum_variant,
@@ -22,14 +23,17 @@ pub enum Source {
     Figure(Figure),
     /// A stored imprint, placed on the plane.
     Picture(Picture),
+    /// Rings, placed like a picture.
+    Outline(Outline),
 }
 
 impl Source {
-    /// Returns "figure" or "picture".
+    /// Returns "figure", "picture" or "outline".
     pub fn noun(&self) -> &'static str {
         match self {
             Self::Figure(_) => "figure",
             Self::Picture(_) => "picture",
+            Self::Outline(_) => "outline",
         }
     }
 
@@ -37,7 +41,7 @@ impl Source {
     pub fn parameters(&self) -> &'static [Parameter] {
         match self {
             Self::Figure(figure) => figure.kind().parameters(),
-            Self::Picture(_) => PICTURE_PARAMETERS,
+            Self::Picture(_) | Self::Outline(_) => PICTURE_PARAMETERS,
         }
     }
 
@@ -45,6 +49,7 @@ impl Source {
         match self {
             Self::Figure(figure) => &figure.values,
             Self::Picture(picture) => &picture.values,
+            Self::Outline(outline) => &outline.values,
         }
     }
 
@@ -53,6 +58,7 @@ impl Source {
         match self {
             Self::Figure(figure) => figure.values.put(parameter, value),
             Self::Picture(picture) => picture.values.put(parameter, value),
+            Self::Outline(outline) => outline.values.put(parameter, value),
         }
     }
 
@@ -77,15 +83,35 @@ impl Source {
         Ok(self)
     }
 
-    /// Returns the kind of figure; None for a picture.
+    /// Returns the kind of figure; None for another shape.
     pub fn kind(&self) -> Option<FigureKind> {
         match self {
             Self::Figure(figure) => Some(figure.kind()),
-            Self::Picture(_) => None,
+            Self::Picture(_) | Self::Outline(_) => None,
         }
     }
 
-    /// Returns the name of the kind of figure, or "picture".
+    /// Returns the name under which a picture or an outline is stored; None if it was not given, and for a figure.
+    pub fn stored_name(&self) -> Option<&str> {
+        match self {
+            Self::Figure(_) => None,
+            Self::Picture(picture) => picture.name(),
+            Self::Outline(outline) => outline.name(),
+        }
+    }
+
+    /// Returns true if both are the same shape but for its values: figures of the same kind, pictures of the same
+    /// imprint, outlines of the same rings.
+    pub fn is_alike(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Figure(own), Self::Figure(other)) => own.kind() == other.kind(),
+            (Self::Picture(own), Self::Picture(other)) => own.imprint() == other.imprint(),
+            (Self::Outline(own), Self::Outline(other)) => own.same_rings(other),
+            _ => false,
+        }
+    }
+
+    /// Returns the name of the kind of figure, or "picture" or "outline".
     pub fn kind_name(&self) -> &'static str {
         self.kind().map_or(self.noun(), FigureKind::name)
     }
@@ -102,6 +128,7 @@ impl Source {
         match self {
             Self::Figure(figure) => figure.rotations(),
             Self::Picture(picture) => Some(picture.rotations(equal_zooms)),
+            Self::Outline(outline) => outline.rotations(equal_zooms),
         }
     }
 
@@ -111,6 +138,7 @@ impl Source {
         match self {
             Self::Figure(_) => Some(0),
             Self::Picture(picture) => picture.mirror(),
+            Self::Outline(outline) => outline.mirror(),
         }
     }
 
@@ -119,6 +147,7 @@ impl Source {
         match self {
             Self::Figure(figure) => figure.box_sides(),
             Self::Picture(picture) => picture.box_sides(),
+            Self::Outline(outline) => outline.box_sides(),
         }
     }
 }
@@ -135,11 +164,18 @@ impl From<Picture> for Source {
     }
 }
 
+impl From<Outline> for Source {
+    fn from(outline: Outline) -> Self {
+        Self::Outline(outline)
+    }
+}
+
 impl Solid for Source {
     fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
         match self {
             Self::Figure(figure) => figure.draw(pen),
             Self::Picture(picture) => picture.draw(pen),
+            Self::Outline(outline) => outline.draw(pen),
         }
     }
 }
@@ -149,6 +185,7 @@ impl fmt::Display for Source {
         match self {
             Self::Figure(figure) => figure.fmt(f),
             Self::Picture(picture) => picture.fmt(f),
+            Self::Outline(outline) => outline.fmt(f),
         }
     }
 }

@@ -156,9 +156,9 @@ impl Sweep {
         let (source, sensor) = self.shape(cx)?;
         let (anchor, given) = (self.anchor.unwrap_or_default(), &self.ranges.0);
         let ranges = match source {
-            // A figure on the command line has no position; a picture is swept in the cell that it lies in.
+            // A figure on the command line has no position; another shape is swept in the cell that it lies in.
             Source::Figure(_) => figure_ranges(&source, &sensor, anchor, given),
-            Source::Picture(_) => default_ranges(&source, &sensor, anchor, given),
+            _ => default_ranges(&source, &sensor, anchor, given),
         };
         let grid = PoseGrid::new(source, sensor, anchor, ranges?)?;
         if self.quiet || given[Axis::X0].and(given[Axis::Y0]).is_some() {

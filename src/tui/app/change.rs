@@ -150,10 +150,8 @@ pub(in crate::tui) fn is_other(app: &App, document: &Document) -> bool {
     let present = app.history.present().source.as_ref();
     app.stored().is_some_and(|stored| match &document.source {
         Some(Source::Figure(figure)) => present.and_then(Source::kind) != Some(figure.kind()),
-        Some(Source::Picture(picture)) => match present {
-            Some(Source::Picture(old)) if old.imprint() == picture.imprint() => false,
-            _ => picture.name() != Some(stored.name.as_str()),
-        },
+        Some(source) if present.is_some_and(|present| present.is_alike(source)) => false,
+        Some(source) => source.stored_name() != Some(stored.name.as_str()),
         None => false,
     })
 }

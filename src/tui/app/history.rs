@@ -2,7 +2,6 @@
 
 use taxel_core::parameter::Parameter;
 use taxel_core::sensor::SENSOR_PARAMETERS;
-use taxel_core::source::Source;
 use taxel_files::formats::name::folded;
 use taxel_files::formats::value::counted;
 use taxel_files::storage::ShapeOrigin;
@@ -283,7 +282,7 @@ pub fn difference(from: &Document, to: &Document) -> String {
     }
     match (&from.source, &to.source) {
         (_, None) => {}
-        (Some(from), Some(to)) if alike(from, to) => {
+        (Some(from), Some(to)) if from.is_alike(to) => {
             for &own in to.parameters() {
                 add(own, from.get(own), to.get(own));
             }
@@ -295,14 +294,6 @@ pub fn difference(from: &Document, to: &Document) -> String {
         changes.push(edits(from, to));
     }
     changes.join(", ")
-}
-
-fn alike(from: &Source, to: &Source) -> bool {
-    match (from, to) {
-        (Source::Figure(from), Source::Figure(to)) => from.kind() == to.kind(),
-        (Source::Picture(from), Source::Picture(to)) => from.imprint() == to.imprint(),
-        _ => false,
-    }
 }
 
 fn edits(from: &Document, to: &Document) -> String {

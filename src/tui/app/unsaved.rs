@@ -232,7 +232,7 @@ fn described(orphan: &Orphan) -> String {
     let shape = &orphan.shape;
     let called = match (shape.name.as_str(), &shape.source) {
         (UNNAMED, Some(Source::Figure(figure))) => Some(figure.kind_and_sizes()),
-        (UNNAMED, Some(Source::Picture(picture))) => picture.name().map(str::to_owned),
+        (UNNAMED, Some(source)) => source.stored_name().map(str::to_owned),
         (UNNAMED, None) => None,
         (name, _) => Some(name.to_owned()),
     };

@@ -39,11 +39,7 @@ impl Findings {
 }
 
 fn name_of(source: &Source) -> &str {
-    let stored = match source {
-        Source::Figure(_) => None,
-        Source::Picture(picture) => picture.name(),
-    };
-    stored.unwrap_or(source.kind_name())
+    source.stored_name().unwrap_or(source.kind_name())
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

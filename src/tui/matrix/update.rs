@@ -188,9 +188,9 @@ fn name_of_origin(app: &App) -> String {
                 _ => name,
             }
         }
-        Some(Source::Picture(picture)) => match picture.name() {
+        Some(source) => match source.stored_name() {
             Some(name) => format!("{name} moved"),
-            None => "picture".to_owned(),
+            None => source.noun().to_owned(),
         },
         None => "drawing".to_owned(),
     }

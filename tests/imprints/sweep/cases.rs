@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use taxel_core::figure::{Figure, FigureKind};
+use taxel_core::outline::{EllipseRing, Outline, Ring};
 use taxel_core::parameter::Parameter;
 use taxel_core::picture::Picture;
 use taxel_core::pose::{Anchor, Axis, PoseGrid, Ranges};
@@ -37,6 +38,20 @@ pub(crate) fn figure(kind: FigureKind, first: f64, second: f64, wall: f64) -> So
 pub(crate) fn picture(rows: &str) -> Source {
     let imprint = rows.replace(' ', "\n").parse().expect("rows of an imprint");
     Source::Picture(Picture::at_home(imprint))
+}
+
+/// Returns an outline of polygons and ellipses (centre, radii, angle).
+pub(crate) fn outline(polygons: &[&[[f64; 2]]], ellipses: &[[f64; 5]]) -> Source {
+    let polygons = polygons.iter().map(|points| Ring::Polygon(points.to_vec()));
+    let ellipses = ellipses.iter().map(|&[cx, cy, rx, ry, angle]| {
+        Ring::Ellipse(EllipseRing {
+            centre: [cx, cy],
+            radii: [rx, ry],
+            angle,
+        })
+    });
+    let outline = Outline::new(polygons.chain(ellipses).collect(), None);
+    Source::Outline(outline.expect("rings that do not cross"))
 }
 
 pub(crate) fn sensor(columns: u8, rows: u8, threshold: f64) -> Sensor {
@@ -113,6 +128,35 @@ pub(crate) fn cases() -> Vec<Case> {
             figure(FigureKind::Octagon, 3.0, 0.0, 1.5),
         ),
         case("octagon 2", figure(FigureKind::Octagon, 2.0, 0.0, 0.0)),
+        case(
+            "outline with holes and a second piece",
+            outline(
+                &[
+                    &[[0.0, 0.0], [7.0, 0.0], [7.0, 2.5], [3.5, 6.0], [0.0, 5.0]],
+                    &[[1.0, 1.0], [1.0, 2.0], [2.5, 2.0], [2.5, 1.0]],
+                    &[[6.0, 4.5], [7.5, 4.5], [7.5, 6.0]],
+                ],
+                &[],
+            ),
+        ),
+        case(
+            "drilled plate",
+            outline(
+                &[&[[0.0, 0.0], [8.0, 0.0], [8.0, 4.0], [4.0, 5.5], [0.0, 4.0]]],
+                &[[2.0, 2.0, 1.0, 1.0, 0.0], [5.5, 2.5, 1.5, 0.75, 30.0]],
+            ),
+        ),
+        case(
+            "flange of circles",
+            outline(
+                &[],
+                &[
+                    [4.0, 4.0, 4.0, 4.0, 0.0],
+                    [1.5, 4.0, 0.75, 0.75, 0.0],
+                    [6.5, 4.0, 0.75, 0.75, 0.0],
+                ],
+            ),
+        ),
         case("ellipse 5 x 3", figure(FigureKind::Ellipse, 5.0, 3.0, 0.0)),
         case(
             "ellipse 5 x 3 wall 1",

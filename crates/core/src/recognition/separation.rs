@@ -149,7 +149,7 @@ impl Separation {
         Ok(Training::of_grids(scaled, grids))
     }
 
-    /// Multiplies every length of a shape; a picture is zoomed instead. Returns the shape with its angles and zooms.
+    /// Multiplies every length of a shape; a picture or an outline is zoomed instead. Returns the shape with its angles and zooms.
     fn scaled(
         &self,
         shape: &NamedShape,
@@ -159,7 +159,7 @@ impl Separation {
         let mut scaled = shape.clone();
         match &shape.source {
             Source::Figure(figure) => scaled.source = enlarged(figure, &shape.name, scale)?.into(),
-            Source::Picture(_) => {
+            Source::Picture(_) | Source::Outline(_) => {
                 for axis in [Axis::ZoomX, Axis::ZoomY] {
                     let own = shape.source.get(axis.parameter());
                     let zoom = own.map_or(scale, |own| own * scale);

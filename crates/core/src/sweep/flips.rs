@@ -220,9 +220,14 @@ pub(crate) enum Level {
 
 impl Level {
     pub(crate) fn of(excess: f64) -> Self {
-        if excess > DOUBT {
+        Self::unless(excess, DOUBT)
+    }
+
+    /// The level of a coverage that exceeds the threshold by `excess`, unless that is less than `doubt`.
+    pub(crate) fn unless(excess: f64, doubt: f64) -> Self {
+        if excess > doubt {
             Self::Above
-        } else if excess < -DOUBT {
+        } else if excess < -doubt {
             Self::Below
         } else {
             Self::Doubtful

@@ -89,6 +89,8 @@ pub(crate) struct Polygonal {
     edges: Vec<Edge>,
     /// The heights of the level edges, which have no pieces.
     levels: Vec<f64>,
+    /// The distance from the threshold below which a coverage is in doubt: a bound of its error.
+    doubt: f64,
     pieces: Vec<Piece>,
     /// Where `w` has a corner, from left to right.
     corners: Vec<f64>,
@@ -96,8 +98,9 @@ pub(crate) struct Polygonal {
 }
 
 impl Polygonal {
-    /// Prepares the edges of a boundary.
-    pub(crate) fn new(edges: &[(Point<f64>, Point<f64>)]) -> Self {
+    /// Prepares the edges of a boundary. A coverage nearer to the threshold than `doubt`, at least [`DOUBT`], is in
+    /// doubt: that is more than the edges that replace curves may change it.
+    pub(crate) fn new(edges: &[(Point<f64>, Point<f64>)], doubt: f64) -> Self {
         let edge = |&(from, to): &(Point<f64>, Point<f64>)| {
             let (upper, lower, sign) = if to.y < from.y {
                 (to, from, 1.0)
@@ -123,6 +126,7 @@ impl Polygonal {
         Self {
             edges,
             levels,
+            doubt,
             ..Self::default()
         }
     }
@@ -134,7 +138,8 @@ impl Polygonal {
         self.stretch();
         // A full cell just reaches a threshold of 1. Where no level edge comes near, it is full without any doubt.
         let inside = |level: &f64| *level > top - DOUBT && *level < top + 1.0 + DOUBT;
-        let certain = threshold > 1.0 - 2.0 * DOUBT && !self.levels.iter().any(inside);
+        let certain =
+            threshold > 1.0 - 2.0 * DOUBT && self.doubt <= DOUBT && !self.levels.iter().any(inside);
         self.walk(threshold, certain, spans);
     }
 
@@ -241,7 +246,7 @@ impl Polygonal {
                     spans.set_level(u, Level::Above);
                 } else {
                     let to = CurvePoint::new(next, right - left - threshold, high - low);
-                    quadratic(from, to, spans);
+                    self.quadratic(from, to, spans);
                 }
                 u = next;
             }
@@ -293,59 +298,62 @@ impl CurvePoint {
     }
 }
 
-/// Notes the levels that a quadratic takes between two points.
-fn quadratic(from: CurvePoint, to: CurvePoint, spans: &mut Spans) {
-    let turning = (from.slope * to.slope < 0.0).then(|| {
-        let way = from.slope / (from.slope - to.slope) * (to.at - from.at);
-        CurvePoint::new(from.at + way, from.value + from.slope * way * 0.5, 0.0)
-    });
-    // The usual case: on one side of the threshold throughout.
-    let extreme = turning.map_or(from.value, |turning| turning.value);
-    if Real::min(Real::min(from.value, to.value), extreme) > DOUBT {
-        return spans.set_level(from.at, Level::Above);
-    }
-    if Real::max(Real::max(from.value, to.value), extreme) < -DOUBT {
-        return spans.set_level(from.at, Level::Below);
-    }
-    match turning {
-        Some(turning) => {
-            monotone(from, turning, spans);
-            monotone(turning, to, spans);
+impl Polygonal {
+    /// Notes the levels that a quadratic takes between two points.
+    fn quadratic(&self, from: CurvePoint, to: CurvePoint, spans: &mut Spans) {
+        let turning = (from.slope * to.slope < 0.0).then(|| {
+            let way = from.slope / (from.slope - to.slope) * (to.at - from.at);
+            CurvePoint::new(from.at + way, from.value + from.slope * way * 0.5, 0.0)
+        });
+        // The usual case: on one side of the threshold throughout.
+        let extreme = turning.map_or(from.value, |turning| turning.value);
+        if Real::min(Real::min(from.value, to.value), extreme) > self.doubt {
+            return spans.set_level(from.at, Level::Above);
         }
-        None => monotone(from, to, spans),
+        if Real::max(Real::max(from.value, to.value), extreme) < -self.doubt {
+            return spans.set_level(from.at, Level::Below);
+        }
+        match turning {
+            Some(turning) => {
+                self.monotone(from, turning, spans);
+                self.monotone(turning, to, spans);
+            }
+            None => self.monotone(from, to, spans),
+        }
     }
-}
 
-/// Notes the levels of a quadratic whose slope does not change sign between two points.
-fn monotone(from: CurvePoint, to: CurvePoint, spans: &mut Spans) {
-    let (before, after) = (Level::of(from.value), Level::of(to.value));
-    spans.set_level(from.at, before);
-    if before == after {
-        return;
-    }
-    // In shares of the way: at share `t`, the quadratic is `from.value + rise * t + bend * t²`.
-    let way = to.at - from.at;
-    let (rise, bend) = (from.slope * way, (to.slope - from.slope) * 0.5 * way);
-    let sense = if to.value > from.value { 1.0 } else { -1.0 };
-    // The place where the quadratic reaches a height, and its slope there, times the way.
-    let passage = |height: f64| {
-        let gap = from.value - height;
-        let root = (rise * rise - 4.0 * bend * gap).max(0.0).sqrt();
-        let share = -2.0 * gap / (rise + sense * root);
-        let share = if share.is_finite() { share } else { 1.0 };
-        ((from.at + way * share.max(0.0)).min(to.at), root)
-    };
-    if before != Level::Doubtful && after != Level::Doubtful {
-        let (at, steepness) = passage(0.0);
-        if steepness >= STEEP * way && 8.0 * bend.abs() * DOUBT <= steepness * steepness {
-            return spans.set_level(at, after);
+    /// Notes the levels of a quadratic whose slope does not change sign between two points.
+    fn monotone(&self, from: CurvePoint, to: CurvePoint, spans: &mut Spans) {
+        let level = |at: CurvePoint| Level::unless(at.value, self.doubt);
+        let (before, after) = (level(from), level(to));
+        spans.set_level(from.at, before);
+        if before == after {
+            return;
         }
-    }
-    // Through the doubtful levels, which are entered at one height and left at another.
-    if before != Level::Doubtful {
-        spans.set_level(passage(-sense * DOUBT).0, Level::Doubtful);
-    }
-    if after != Level::Doubtful {
-        spans.set_level(passage(sense * DOUBT).0, after);
+        // In shares of the way: at share `t`, the quadratic is `from.value + rise * t + bend * t²`.
+        let way = to.at - from.at;
+        let (rise, bend) = (from.slope * way, (to.slope - from.slope) * 0.5 * way);
+        let sense = if to.value > from.value { 1.0 } else { -1.0 };
+        // The place where the quadratic reaches a height, and its slope there, times the way.
+        let passage = |height: f64| {
+            let gap = from.value - height;
+            let root = (rise * rise - 4.0 * bend * gap).max(0.0).sqrt();
+            let share = -2.0 * gap / (rise + sense * root);
+            let share = if share.is_finite() { share } else { 1.0 };
+            ((from.at + way * share.max(0.0)).min(to.at), root)
+        };
+        if self.doubt <= DOUBT && before != Level::Doubtful && after != Level::Doubtful {
+            let (at, steepness) = passage(0.0);
+            if steepness >= STEEP * way && 8.0 * bend.abs() * DOUBT <= steepness * steepness {
+                return spans.set_level(at, after);
+            }
+        }
+        // Through the doubtful levels, which are entered at one height and left at another.
+        if before != Level::Doubtful {
+            spans.set_level(passage(-sense * self.doubt).0, Level::Doubtful);
+        }
+        if after != Level::Doubtful {
+            spans.set_level(passage(sense * self.doubt).0, after);
+        }
     }
 }

@@ -7,12 +7,12 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::atlas::{ImprintCounter, Layout};
-use crate::geometry::{Extent, Real};
+use crate::geometry::{Ellipse, Extent, Point, Real, Side};
 use crate::index::{from_first, narrow, wide};
 use crate::pose::{Boundary, PoseGrid};
 use crate::progress::Progress;
 use crate::sweep::ellipse::Elliptic;
-use crate::sweep::flips::{Events, Exact, FlipWriter, Spans, Steps, effort};
+use crate::sweep::flips::{DOUBT, Events, Exact, FlipWriter, Spans, Steps, effort};
 use crate::sweep::plan::{PointSymmetry, Task};
 use crate::sweep::polygon::Polygonal;
 use crate::touch::DOUBTFUL;
@@ -92,12 +92,25 @@ enum Shape {
 }
 
 impl Shape {
-    /// Uses the method for one ellipse, with or without a hole, and otherwise that for straight edges.
+    /// Uses the method for one ellipse, with or without a hole, if there is nothing else, and otherwise that for straight
+    /// edges. Ellipses beside others become polygons then, so coverages near the threshold are decided exactly.
     fn new(boundary: &Boundary<f64>) -> Self {
-        match Elliptic::new(&boundary.ellipses) {
-            Some(elliptic) => Self::Elliptic(elliptic),
-            None => Self::Polygonal(Polygonal::new(&boundary.edges)),
+        let elliptic = Elliptic::new(&boundary.ellipses).filter(|_| boundary.edges.is_empty());
+        if let Some(elliptic) = elliptic {
+            return Self::Elliptic(elliptic);
         }
+        let mut edges = boundary.edges.clone();
+        for (ellipse, material) in &boundary.ellipses {
+            chords(ellipse, *material, &mut edges);
+        }
+        let doubt = if boundary.ellipses.is_empty() {
+            DOUBT
+        } else {
+            // Within a cell, a convex arc is no longer than the cell's outline.
+            let count = u32::try_from(boundary.ellipses.len()).unwrap_or(u32::MAX);
+            DOUBT + 4.0 * HEIGHT * f64::from(count)
+        };
+        Self::Polygonal(Polygonal::new(&edges, doubt))
     }
 
     /// Notes where taxels in a row of the sensor switch, for the band that begins at `top`.
@@ -107,6 +120,38 @@ impl Shape {
             Self::Elliptic(shape) => shape.band(top, row, threshold, spans),
         }
     }
+}
+
+/// The largest distance between an ellipse and its chords, in cell sides.
+const HEIGHT: f64 = 1e-4;
+
+/// Adds the chords of an ellipse to the edges of a boundary.
+fn chords(ellipse: &Ellipse<f64>, material: Side, edges: &mut Vec<(Point<f64>, Point<f64>)>) {
+    let reach = ellipse.reach();
+    // The longer radius is at most this.
+    let radius = libm::hypot(reach.x, reach.y);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "from 8 to 100,000"
+    )]
+    let count = (std::f64::consts::PI / libm::acos((1.0 - HEIGHT / radius).max(0.0)))
+        .ceil()
+        .clamp(8.0, 1e5) as u32;
+    let at = |chord: u32| {
+        let degrees = 360.0 * f64::from(chord % count) / f64::from(count);
+        let (sin, cos) = degrees.sin_cos_degrees();
+        let axis = |own: Point<f64>, part: f64| Point::new(own.x * part, own.y * part);
+        let across = axis(ellipse.across, cos);
+        ellipse.centre.moved(across).moved(axis(ellipse.along, sin))
+    };
+    // Clockwise as seen, unless the second axis lies on the other side of the first.
+    let turned = ellipse.across.x * ellipse.along.y < ellipse.across.y * ellipse.along.x;
+    let is_reversed = turned != (material == Side::Outside);
+    edges.extend((0..count).map(|chord| {
+        let (from, to) = (at(chord), at(chord + 1));
+        if is_reversed { (to, from) } else { (from, to) }
+    }));
 }
 
 /// Sweeps the orientations of a task, one value of y0 after another.

@@ -11,7 +11,7 @@ use taxel_core::quote::did_you_mean;
 use taxel_core::recognition::{Evaluation, Model, NamedShape};
 use taxel_core::source::Source;
 use taxel_core::sweep::Shard;
-use taxel_files::formats::value::{counted, grouped, percent};
+use taxel_files::formats::value::{counted, decimal, grouped, percent};
 use taxel_files::formats::{Name, json};
 use taxel_files::storage::{ModelChoice, load_model, model_hash};
 
@@ -86,6 +86,10 @@ fn described(shape: &NamedShape) -> String {
         }
         Source::Picture(picture) => {
             format!("picture of {}", counted(picture.imprint().count(), "taxel"))
+        }
+        Source::Outline(outline) => {
+            let [width, height] = outline.size().map(|side| decimal(side, 2));
+            format!("outline of {width} × {height} cells")
         }
     }
 }
