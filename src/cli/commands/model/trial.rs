@@ -154,7 +154,10 @@ impl TrialReport<'_> {
             let label = format!("{:>digits$} {}", number + 1, row.label);
             let cells = columns.iter();
             let cells = cells.map(|&column| cell(row.counts[column], column == row.right));
-            let right = percent(share(row.counts[row.right], row.counts.iter().sum()));
+            let right = match row.counts.iter().sum() {
+                0 => "–".to_owned(),
+                touches => percent(share(row.counts[row.right], touches)),
+            };
             let line = iter::once(label).chain(cells).chain([right]);
             lines.push(line.collect());
         }
