@@ -88,6 +88,15 @@ pub(crate) fn verdict(answer: &Answer, model: &Model) -> String {
     }
 }
 
+/// The nearest imprint of the model, if it is another one and nothing was fitted: the verdict says how many taxels differ
+/// from a fit.
+pub(crate) fn nearest_in_words(answer: &Answer, model: &Model) -> Option<String> {
+    let nearest = answer.nearest.as_ref().filter(|_| answer.fit.is_none())?;
+    let name = &model.shapes()[nearest.shape].name;
+    let differ = differing(nearest.distance);
+    (nearest.distance > 0).then(|| format!("{name}, {differ}"))
+}
+
 fn in_words(fit: &Fit) -> String {
     let at = |parameter, decimals: usize| {
         let value = fit.source.get(parameter).unwrap_or_default();

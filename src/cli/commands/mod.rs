@@ -25,7 +25,7 @@ pub(super) mod merge;
 
 pub(super) mod model;
 
-pub(super) mod recognise;
+pub(crate) mod recognise;
 
 pub(crate) mod frame_flags;
 

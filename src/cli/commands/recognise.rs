@@ -150,7 +150,7 @@ impl TermsFlags {
     }
 }
 
-fn noise(text: &str) -> Result<Noise, String> {
+pub(crate) fn noise(text: &str) -> Result<Noise, String> {
     let noise = Noise::new(parse_number(text)?);
     noise.map_err(|error: NoiseError| error.expected().to_owned())
 }

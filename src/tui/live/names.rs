@@ -3,12 +3,11 @@
 use std::sync::Arc;
 
 use taxel_core::imprint::Imprint;
-use taxel_core::parameter::number::differing;
-use taxel_core::recognition::Model;
+use taxel_core::recognition::{Answer, Model};
 use taxel_files::storage::ModelChoice;
 
 use crate::frames::WatchRequest;
-use crate::naming::{Terms, verdict};
+use crate::naming::{Terms, nearest_in_words, verdict};
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::state::App;
 use crate::tui::jobs::{Slot, answer};
@@ -26,34 +25,9 @@ pub struct ShapeNames {
     pub choice: Option<ModelChoice>,
     /// The model, or why it cannot be used; None while it is being trained or read.
     model: Option<Result<Arc<Model>, String>>,
-    answer: Option<NamedImprint>,
-}
-
-#[derive(Clone, Debug)]
-struct NamedImprint {
-    imprint: Imprint,
-    shape: String,
-    nearest: Option<String>,
-    /// What the shape of the answer leaves in the pose that fits.
-    fitted: Option<Imprint>,
-}
-
-impl NamedImprint {
-    /// A single touch is the evidence, because the frames of a source may show different shapes.
-    fn new(model: &Model, imprint: &Imprint, dead: Option<&Imprint>, terms: Terms) -> Self {
-        let answer = terms.answer(model, &[*imprint], dead);
-        let name = |shape: usize| model.shapes()[shape].name.as_str();
-        let nearest = answer.nearest.as_ref();
-        // The verdict says how many taxels differ from a fit.
-        let nearest = nearest.filter(|own| own.distance > 0 && answer.fit.is_none());
-        Self {
-            imprint: *imprint,
-            shape: verdict(&answer, model),
-            nearest: nearest
-                .map(|nearest| format!("{}, {}", name(nearest.shape), differing(nearest.distance))),
-            fitted: answer.fit.map(|fit| fit.imprint),
-        }
-    }
+    /// The imprint that was named last, and its answer. A single touch is the evidence, because the frames of a source may
+    /// show different shapes.
+    answer: Option<(Imprint, Answer)>,
 }
 
 impl ShapeNames {
@@ -71,8 +45,9 @@ impl ShapeNames {
     pub fn name(&mut self, imprint: Option<&Imprint>, dead: Option<&Imprint>) {
         let imprint = imprint.filter(|imprint| !imprint.is_empty());
         if let (Some(imprint), Some(Ok(model))) = (imprint, &self.model) {
-            if self.answer.as_ref().map(|own| &own.imprint) != Some(imprint) {
-                self.answer = Some(NamedImprint::new(model, imprint, dead, self.terms));
+            if self.answer.as_ref().map(|(own, _)| own) != Some(imprint) {
+                let answer = self.terms.answer(model, &[*imprint], dead);
+                self.answer = Some((*imprint, answer));
             }
         } else {
             self.answer = None;
@@ -92,7 +67,8 @@ impl ShapeNames {
 
     /// Returns the imprint of the shape that was fitted; None if none was.
     pub fn fitted(&self) -> Option<&Imprint> {
-        self.answer.as_ref()?.fitted.as_ref()
+        let (_, answer) = self.answer.as_ref()?;
+        answer.fit.as_ref().map(|fit| &fit.imprint)
     }
 
     /// Returns the lines about the shape, the nearest imprint if no shape was fitted, and the model with its terms; none
@@ -101,14 +77,17 @@ impl ShapeNames {
         let Some(choice) = &self.choice else {
             return Vec::new();
         };
+        let mut nearest = None;
         let shape = match (&self.model, &self.answer) {
             (Some(Err(reason)), _) => format!("! {reason}"),
-            (_, Some(answer)) => answer.shape.clone(),
+            (Some(Ok(model)), Some((_, answer))) => {
+                nearest = nearest_in_words(answer, model);
+                verdict(answer, model)
+            }
             (None, _) if any => "training or reading the model".to_owned(),
             _ => theme.none().to_owned(),
         };
         let mut lines = vec![(SHAPE, shape)];
-        let nearest = self.answer.as_ref().and_then(|own| own.nearest.clone());
         lines.extend(nearest.map(|nearest| ("nearest", nearest)));
         let terms = self.terms.in_words().map(|terms| format!(", {terms}"));
         let terms = terms.unwrap_or_default();

@@ -304,7 +304,7 @@ fn switch_layer(app: &mut App, layer: Layer) {
         Layer::Fit => (
             "the outline of the fitted shape",
             app.recognition
-                .fit
+                .fitted
                 .is_none()
                 .then(|| ", once there is one".to_owned()),
             &mut app.layers.fit,

@@ -24,6 +24,7 @@ use taxel_files::storage::ModelChoice;
 
 use crate::cli::arguments::flags::{one_of, parse_number};
 use crate::cli::arguments::parameters::{FigureFlags, RangeFlags, SensorFlags};
+use crate::cli::commands::recognise;
 use crate::naming::Terms;
 use crate::tui::app::document::Document;
 use crate::tui::app::message::{Message, Purpose};
@@ -148,15 +149,12 @@ const ON_LIVE: [&str; 7] = [
 ];
 const ONLY_ON_LIVE: [&str; 2] = ["at-least", "size"];
 
-/// None if it is not known.
+/// None leaves it to the model.
 type GivenNoise = Option<Noise>;
 
 fn noise(text: &str) -> Result<GivenNoise, String> {
-    if text == "auto" {
-        return Ok(None);
-    }
-    let noise = Noise::new(parse_number(text)?);
-    noise.map(Some).map_err(|error| error.expected().to_owned())
+    let is_given = text != "auto";
+    is_given.then(|| recognise::noise(text)).transpose()
 }
 
 fn sides(text: &str) -> Result<FrameSize, String> {

@@ -6,8 +6,9 @@ use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
 use ratatui::layout::{Position, Rect};
 use taxel_core::imprint::Imprint;
-use taxel_core::recognition::{Answer, Fit, Nearest};
+use taxel_core::recognition::Answer;
 use taxel_core::sensor::MatrixSize;
+use taxel_core::source::Source;
 use taxel_files::formats::Name;
 use taxel_files::storage::{ModelChoice, RememberedFile};
 
@@ -43,7 +44,9 @@ pub(crate) struct Recognition {
     /// The answer about all touches.
     pub(super) answer: Option<Answer>,
     /// The shape of the answer, fitted to the touch on the matrix.
-    pub(crate) fit: Option<Fit>,
+    pub(crate) fitted: Option<Source>,
+    /// What it leaves there; if nothing is fitted, the nearest imprint of the model.
+    pub(super) like: Option<Imprint>,
     random: Pcg64,
 }
 
@@ -73,7 +76,8 @@ impl Recognition {
             threshold: None,
             terms: Terms::default(),
             answer: None,
-            fit: None,
+            fitted: None,
+            like: None,
             random: Pcg64::seed_from_u64(seed),
         }
     }
@@ -112,28 +116,24 @@ impl Recognition {
         self.threshold.filter(|&threshold| threshold != trained)
     }
 
-    /// The nearest imprint of the model, if it is another one and no shape was fitted to the touch on the matrix.
-    pub(super) fn nearest(&self) -> Option<&Nearest> {
-        let answer = self.answer.as_ref().filter(|answer| answer.fit.is_none())?;
-        // Of several touches, the nearest imprint may be that of another one.
-        let nearest = answer.nearest.as_ref().filter(|_| self.kept.is_empty());
-        nearest.filter(|nearest| nearest.distance > 0)
-    }
-
     fn ask(&mut self) {
-        (self.answer, self.fit) = (None, None);
+        (self.answer, self.fitted, self.like) = (None, None, None);
         let touches = self.touches();
         let Some(trained) = self.model().filter(|_| !touches.is_empty()) else {
             return;
         };
         let model = &trained.model;
         let answer = self.terms.answer(model, &touches, None);
-        let fit = answer.fit.as_ref().and_then(|fit| match touches[..] {
-            [only] if only == self.present => Some(fit.clone()),
-            // Of several touches, the fit is to the one that differs most.
-            _ => model.fit(fit.shape, &self.present, None),
-        });
-        (self.answer, self.fit) = (Some(answer), fit);
+        // Of several touches, the answer is about the one that differs most.
+        let is_only = touches[..] == [self.present];
+        let fit = match &answer.fit {
+            Some(fit) if !is_only => model.fit(fit.shape, &self.present, None),
+            fit => fit.clone(),
+        };
+        let nearest = answer.nearest.as_ref().filter(|_| is_only);
+        let like = fit.as_ref().map(|fit| fit.imprint);
+        self.like = like.or(nearest.map(|nearest| nearest.imprint));
+        (self.answer, self.fitted) = (Some(answer), fit.map(|fit| fit.source));
     }
 }
 

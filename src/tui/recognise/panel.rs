@@ -18,13 +18,13 @@
 
 use ratatui::layout::{Position, Rect};
 use taxel_core::imprint::Imprint;
-use taxel_core::parameter::number::{differing, share, short};
+use taxel_core::parameter::number::{share, short};
 use taxel_core::pose::Axis;
 use taxel_core::recognition::AnswerState;
 use taxel_core::source::Source;
 use taxel_files::formats::value::{counted, decimal, percent};
 
-use crate::naming::verdict;
+use crate::naming::{nearest_in_words, verdict};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Canvas, Flow, Page, Place};
 use crate::tui::app::state::App;
@@ -92,13 +92,11 @@ impl Page for Recognition {
     }
 
     fn compared_with(&self) -> Option<&Imprint> {
-        let fitted = self.fit.as_ref().map(|fit| &fit.imprint);
-        let nearest = || self.nearest().map(|nearest| &nearest.imprint);
-        fitted.or_else(nearest).filter(|&own| *own != self.present)
+        self.like.as_ref().filter(|&like| *like != self.present)
     }
 
     fn fitted(&self) -> Option<&Source> {
-        self.fit.as_ref().map(|fit| &fit.source)
+        self.fitted.as_ref()
     }
 
     fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
@@ -191,9 +189,8 @@ impl Panel<'_> {
             if answer.at_rim {
                 self.text("at the rim, perhaps cut off", Role::Text);
             }
-            if let Some(nearest) = page.nearest() {
-                let (name, differ) = (trained.name(nearest.shape), differing(nearest.distance));
-                self.text(&format!("nearest: {name}, {differ}"), Role::Text);
+            if let Some(nearest) = nearest_in_words(answer, &trained.model) {
+                self.text(&format!("nearest: {nearest}"), Role::Text);
             }
             if let Some(other) = page.compared_with() {
                 self.text(&legend(&page.present, other), Role::Quiet);
