@@ -517,13 +517,13 @@ fn watch_accepts_the_flags_of_the_command_line() {
 #[test]
 fn a_reopened_page_uses_the_model_that_it_shows() {
     let mut page = watched(6, "o+++++++");
-    shows(&page, &["shape      none of these: ", "model      figures"]);
-    then(&mut page, "<Esc>ww", &["model      figures"]);
+    shows(&page, &["shape      none of these: ", "model      library"]);
+    then(&mut page, "<Esc>ww", &["model      library"]);
     page.frames(5);
     shows(&page, &["frame 4", "shape      ", "taxels differ"]);
     hides(&page, &["…", "training or"]);
     // The page does not name shapes with a model that was given up, either.
-    then(&mut page, "ooo<Esc>ww", &[]);
+    then(&mut page, "oooo<Esc>ww", &[]);
     page.frames(6);
     hides(&page, &["differ"]);
 }
