@@ -134,7 +134,10 @@ fn a_stored_model_is_completed_used_and_remembered() {
     shows(&begin(":recognise Cargo.toml<Enter>"), &["Cargo.toml: "]);
     // A model that does not exist is refused with a list of the others, and not remembered.
     let all = "no model or file named \"nonsense\"; models: library, figures, figures-30,";
-    shows(&begin(":recognise nonsense<Enter>"), &[all, "shapes, my parts"]);
+    shows(
+        &begin(":recognise nonsense<Enter>"),
+        &[all, "shapes, my parts"],
+    );
     shows(&begin("r"), &["Recognise: model shapes"]);
 }
 

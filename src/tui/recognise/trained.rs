@@ -5,18 +5,13 @@ use std::time::SystemTime;
 
 use rand_pcg::Pcg64;
 use taxel_core::imprint::Imprint;
-use taxel_core::parameter::number::share;
-use taxel_core::pose::{Pose, PoseGrid};
-use taxel_core::recognition::{Evaluation, Model, below};
+use taxel_core::pose::PoseGrid;
+use taxel_core::recognition::{Evaluation, Model, below, random_touch};
 use taxel_core::sensor::Sensor;
-use taxel_core::touch::Plane;
 use taxel_files::storage::{FoundModel, ModelChoice, Models};
 
 use crate::tui::jobs::JobProgress;
 use crate::tui::recognise::confusion::{Examples, examples};
-
-/// The poses of a random touch from one value of a range to the next.
-const PARTS: u64 = 1000;
 
 #[derive(Debug)]
 pub(crate) struct TrainedModel {
@@ -93,15 +88,7 @@ impl TrainedModel {
         let (own, ranges) = (*self.model.sensor(), *self.model.ranges());
         let source = shapes.get(shape)?.source.clone();
         let grid = PoseGrid::new(source, own, self.model.anchor(), ranges).ok()?;
-        let pose = Pose::from_fn(|axis| {
-            let range = ranges[axis];
-            let at = range.value(below(random, range.count()));
-            match range.count() {
-                1 => at,
-                _ => at + range.step() * share(below(random, PARTS).into(), PARTS.into()),
-            }
-        });
-        let imprint = Plane::new(own).touch(&grid.placed_in(pose));
+        let imprint = random_touch(&grid, random);
         let (sensor, imprint) = onto(&imprint, sensor, own);
         Some((shape, sensor, imprint))
     }

@@ -52,4 +52,4 @@ pub use simulation::{MOST_TOUCHES, NoisyTouches, RecognitionRate, TouchesUntil, 
 pub use training::{
     CellPositions, GridSteps, LEAST_SIDE, Training, TrainingError, default_figures, equal_figures,
 };
-pub use trial::{RandomTouches, Tally, Trial};
+pub use trial::{RandomTouches, Tally, Trial, random_touch};

@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 
+use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
 use crate::imprint::Imprint;
@@ -235,7 +236,8 @@ impl RandomTouches {
             for (row, grid) in grids.iter().enumerate() {
                 let touches = (first..first + self.per_shape).into_par_iter();
                 let counted = touches.map(|number| {
-                    let touch = random_touch(grid, self.seed, number);
+                    // Each touch has its own generator, so that none waits for another.
+                    let touch = random_touch(grid, &mut generator(self.seed, number));
                     let counted = Counted::of(&answer(&touch));
                     progress.add(1).is_continue().then_some(counted)
                 });
@@ -273,14 +275,13 @@ fn placed_around_the_middle(
     Training::new(shapes, sensor, Anchor::Centre, ranges)
 }
 
-/// Touches with a shape in a random pose. Each touch has its own generator, so that none waits for another.
-fn random_touch(grid: &PoseGrid, seed: u64, number: u64) -> Imprint {
-    let mut random = generator(seed, number);
+/// Touches with a shape in a random pose, which may lie between those of the grid.
+pub fn random_touch(grid: &PoseGrid, random: &mut Pcg64) -> Imprint {
     let pose = Pose::from_fn(|axis| {
         let range = grid.ranges()[axis];
         match range.count() {
             1 => range.value(0),
-            count => range.value(0) + unit(&mut random) * (range.value(count) - range.value(0)),
+            count => range.value(0) + unit(random) * (range.value(count) - range.value(0)),
         }
     });
     Plane::new(*grid.sensor()).touch(&grid.placed_in(pose))
@@ -374,7 +375,7 @@ mod tests {
         let grid = grid.expect("in range");
         // The left edge covers half of column 3 up to x0 = 3.5, and the touch begins in column 4 beyond.
         let lefts = (0..400).map(|number| {
-            let bounds = random_touch(&grid, 1, number)
+            let bounds = random_touch(&grid, &mut generator(1, number))
                 .bounds()
                 .expect("active taxels");
             assert_eq!((bounds.top, bounds.bottom), (6, 8));
