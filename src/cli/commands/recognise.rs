@@ -192,7 +192,7 @@ impl Namer {
         Recognition {
             namer: self,
             answer: self.terms.answer(&self.model, touches, dead),
-            dead,
+            dead: dead.filter(|dead| !dead.is_empty()),
             pose: None,
             copied: Vec::new(),
         }

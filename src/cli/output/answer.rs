@@ -147,11 +147,8 @@ impl Recognition<'_> {
         }
         match (&self.pose, answer.shape) {
             (Some(pose), _) => text += &pose.text(),
-            (None, Some(shape)) if self.namer.asks_pose => {
-                let name = self.name(shape);
-                text += &format!(
-                    "{name} leaves exactly this imprint in none of the poses that were tried\n"
-                );
+            (None, Some(_)) if self.namer.asks_pose => {
+                text += "spread of the pose unknown: no pose of a fine grid leaves this imprint\n";
             }
             _ => {}
         }

@@ -45,7 +45,7 @@ pub use fit::Fit;
 pub use given::{ChosenDescriptor, GivenDescriptors, GivenError, Rounding, ShapeDescriptor};
 pub use likelihood::{Distances, Noise, NoiseError, SearchMethod};
 pub use model::{Model, ModelError, ModelHead, ModelMerge, NamedShape, ShapeCount};
-pub use pose_estimate::{AngleEstimate, PlacedSource, PoseEstimate};
+pub use pose_estimate::{AngleEstimate, PoseEstimate};
 pub use scan::Nearest;
 pub use separation::{Separation, SeparationPoint, SizeAxis, SmallestSize};
 pub use simulation::{MOST_TOUCHES, NoisyTouches, RecognitionRate, TouchesUntil, below};

@@ -5,7 +5,6 @@ use crate::pose::{Axis, PoseGrid, Ranges, exact_period};
 use crate::progress::Progress;
 use crate::recognition::fit::thinned;
 use crate::recognition::model::{Model, float};
-use crate::source::Source;
 use crate::sweep::{Shard, Sweep};
 use crate::touch::Plane;
 
@@ -86,49 +85,34 @@ const FINE_STEPS: [(Axis, f64, f64); 3] = [
 impl Model {
     /// Finds the poses in which a shape leaves an imprint, by touching with the shape in every pose of the model. If it
     /// leaves the imprint in none of them, finer poses of the same ranges are tried: at most 0.05 cells and 1° apart, up
-    /// to just before the value after the last one, but within a cell. Of a shard, only its own poses count, and none in between.
-    /// `progress` is called as by [`Sweep::with_progress`]. None if there is no such shape, if it leaves the imprint in
-    /// none of these poses, if the imprint is empty, or if it was stopped.
+    /// to just before the value after the last one, but within a cell. Of a shard, only its own poses count, and none in
+    /// between. `progress` is called as by [`Sweep::with_progress`]. None if there is no such shape, if it leaves the
+    /// imprint in none of these poses, if the imprint is empty, or if it was stopped.
     pub fn pose_of(
         &self,
         shape: usize,
         imprint: &Imprint,
         progress: &dyn Progress,
     ) -> Option<PoseEstimate> {
-        self.poses_of(shape, imprint, 0, progress)
-            .map(|(estimate, _)| estimate)
-    }
-
-    /// Returns the same as [`Self::pose_of`], with at most `most` of the poses: first the one nearest to the mean,
-    /// then others spread over the 95 % of the poses that are nearest to it. Single poses are equally likely, so the
-    /// first one stands for the likeliest place.
-    pub fn poses_of(
-        &self,
-        shape: usize,
-        imprint: &Imprint,
-        most: usize,
-        progress: &dyn Progress,
-    ) -> Option<(PoseEstimate, Vec<PlacedSource>)> {
-        let known = self.poses_in(*self.ranges(), shape, imprint, most, progress);
-        known.or_else(|| {
-            let mut ranges = *self.ranges();
+        let own = *self.ranges();
+        self.pose_within(own, shape, imprint, progress).or_else(|| {
+            let mut ranges = own;
             for (axis, most, span) in FINE_STEPS {
                 ranges[axis] = thinned(ranges[axis].divided(most)?, most, span)?;
             }
-            let is_finer = ranges != *self.ranges() && self.shard() == Shard::WHOLE;
-            is_finer.then(|| self.poses_in(ranges, shape, imprint, most, progress))?
+            let is_finer = ranges != own && self.shard() == Shard::WHOLE;
+            is_finer.then(|| self.pose_within(ranges, shape, imprint, progress))?
         })
     }
 
-    /// Returns the same of the poses in these ranges.
-    fn poses_in(
+    /// Finds the poses within these ranges.
+    fn pose_within(
         &self,
         ranges: Ranges,
         shape: usize,
         imprint: &Imprint,
-        most: usize,
         progress: &dyn Progress,
-    ) -> Option<(PoseEstimate, Vec<PlacedSource>)> {
+    ) -> Option<PoseEstimate> {
         let bounds = imprint.bounds()?;
         let key = ImprintKey::of(imprint);
         let source = self.shapes().get(shape)?.source.clone();
@@ -142,9 +126,7 @@ impl Model {
         let mut plane = Plane::new(*grid.sensor());
         let mut sums = PoseMoments::default();
         let mut degrees = vec![0; period.map_or(1, whole_degrees) as usize];
-        let mut seen = Vec::new();
         for run in runs {
-            let first = grid.pose(run.first);
             // All poses of a run leave one imprint, in one place.
             let there = plane.touch(&grid.placed(run.first)).bounds()?;
             let by = [
@@ -155,93 +137,14 @@ impl Model {
             let [x, y] = grid.centre(run.first);
             let weight = run.poses * run.orientations;
             sums.add(weight, (x + by[0], last + by[0]), run.poses, y + by[1]);
-            if most > 0 {
-                let middle = run.first + run.poses / 2;
-                let x = f64::midpoint(x, last) + by[0];
-                seen.push(SeenPose {
-                    place: [x, y + by[1], first[Axis::Angle]],
-                    weight,
-                    number: middle,
-                    by,
-                });
-            }
             if let Some(period) = period {
-                let angle = first[Axis::Angle].rem_euclid(period);
+                let angle = grid.pose(run.first)[Axis::Angle].rem_euclid(period);
                 sums.add_direction(weight, angle / period);
                 degrees[whole(angle, period)] += weight;
             }
         }
-        let estimate = sums.finish(period.map(|period| (period, degrees)))?;
-        let sources = chosen(seen, &estimate, most).into_iter();
-        let sources = sources.filter_map(|own| {
-            let source = grid.source_at(grid.pose(own.number)).ok()?;
-            Some(PlacedSource { source, by: own.by })
-        });
-        Some((estimate, sources.collect()))
+        sums.finish(period.map(|period| (period, degrees)))
     }
-}
-
-/// A shape in a pose, and how far it is moved from there onto the matrix of an imprint.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PlacedSource {
-    /// The shape on the sensor of the model.
-    pub source: Source,
-    /// The number of columns and rows by which its imprint is shifted on the matrix.
-    pub by: [f64; 2],
-}
-
-/// A run of neighbouring poses that leave the imprint.
-struct SeenPose {
-    place: [f64; 3],
-    weight: u64,
-    number: u64,
-    /// The columns and rows by which its imprint is moved.
-    by: [f64; 2],
-}
-
-/// Chooses the pose nearest to the mean, then others spread evenly over the 95 % nearest to it, in order of distance;
-/// at most `most` of them. Distances are in units of the standard deviation of x, y and angle.
-fn chosen(mut seen: Vec<SeenPose>, estimate: &PoseEstimate, most: usize) -> Vec<SeenPose> {
-    let distance = |own: &SeenPose| {
-        // In units of the deviation; 0 if there is none.
-        let over = |from, deviation| {
-            if deviation > 0.0 {
-                from / deviation
-            } else {
-                0.0
-            }
-        };
-        let [x, y, angle] = own.place;
-        let dx = over(x - estimate.position[0], estimate.standard_deviation[0]);
-        let dy = over(y - estimate.position[1], estimate.standard_deviation[1]);
-        let turned = estimate.angle.as_ref().and_then(|own| {
-            let period = own.period;
-            let from = (angle - own.mean? + period / 2.0).rem_euclid(period) - period / 2.0;
-            Some(over(from, own.standard_deviation?))
-        });
-        let da = turned.unwrap_or_default();
-        dx * dx + dy * dy + da * da
-    };
-    // The bits of numbers that are not negative are in the order of the numbers.
-    seen.sort_by_cached_key(|own| (distance(own).max(0.0).to_bits(), own.number));
-    let (mut held, mut count) = (0_u128, 0);
-    while count < seen.len() && (count == 0 || held * 100 < u128::from(estimate.poses) * 95) {
-        held += u128::from(seen[count].weight);
-        count += 1;
-    }
-    seen.truncate(count);
-    // `most` may be any number, and is multiplied.
-    let others = most.clamp(2, count + 2) - 1;
-    let mut index = 0;
-    seen.retain(|_| {
-        // The first pose, the first of each further part, and the last one.
-        let part = |index: usize| index * others / count;
-        let kept = index == 0 || part(index) != part(index - 1) || index + 1 == count;
-        index += 1;
-        kept
-    });
-    seen.truncate(most);
-    seen
 }
 
 #[expect(
@@ -391,29 +294,12 @@ mod tests {
             assert_eq!(own.map(|count| count.poses).sum::<u64>(), estimate.poses);
             assert!((estimate.position[0] - mean).abs() < 1e-9);
             assert!((estimate.standard_deviation[0] - spread).abs() < 1e-6);
-            let (same, poses) = (model.poses_of(shape, &imprint, 9, &ToTheEnd)).expect("it does");
-            assert_eq!(same, estimate);
-            assert!((1..=9).contains(&poses.len()));
-            for placed in &poses {
-                let touch = plane.touch(&placed.source);
-                assert!(ImprintKey::of(&touch) == key, "{:?}", placed.source);
-                let there = touch.bounds().expect("not empty");
-                let moved = f64::from(there.left) + placed.by[0];
-                assert!((moved - f64::from(bounds.left)).abs() < 1e-9);
-            }
             assert_eq!(
                 estimate.angle.is_none(),
                 shape == 0,
                 "only a disc has no angle"
             );
         }
-        let imprint = Plane::new(*grids[0].sensor()).touch(&grids[0].placed(4321));
-        let seen = |most| {
-            let poses = model.poses_of(0, &imprint, most, &ToTheEnd);
-            poses.map_or(0, |(_, poses)| poses.len())
-        };
-        assert!(seen(usize::MAX) > 2, "all of them");
-        assert_eq!(seen(usize::MAX), seen(1_000_000));
         assert_eq!(
             model.pose_of(7, &Imprint::empty(MatrixSize::of(4, 4)), &ToTheEnd),
             None
