@@ -476,6 +476,30 @@ fn frames_are_named_by_a_model() {
     assert_eq!(framed["frame"], Value::Null);
     let text = place.done("frames touch.jsonl --peak --at-least 5 --model r");
     assert!(text.contains("\nd  >99.9 %  fits exactly at "), "{text}");
+    // A cell without a value may be covered. Without it and a corner, the touch fits as well as allowed.
+    let gap = row("0,9,null,9,9,0");
+    let corner = row("0,0,9,9,9,0");
+    place.write(
+        "gap.jsonl",
+        &frame([&empty, &full, &gap, &full, &corner, &empty]),
+    );
+    let near = "gap.jsonl --at-least 5 --model r --tolerance";
+    for (tolerance, state) in [(0, "unknown"), (1, "likely")] {
+        let named =
+            place.json(&format!("frames {near} {tolerance} --all --json"))["recognition"].take();
+        assert_eq!(
+            (&named["state"], &named["fit"]["differs"]),
+            (&state.into(), &1.into())
+        );
+        let watched = place.json(&format!("watch {near} {tolerance} --once"));
+        assert_eq!(watched["recognition"], named);
+    }
+    let text = place.done(&format!("frames {near} 1 --all"));
+    assert!(text.contains("\n  · ██x ████·\n"), "{text}");
+    let lacks = "the following required arguments were not provided:
+  --model ";
+    misused("frames touch.jsonl --all --at-least 5 --tolerance 1", lacks);
+    misused("watch touch.jsonl --once --noise 0.01", lacks);
     for line in [
         "watch touch.jsonl --once",
         "frames touch.jsonl --peak --at-least 5",
