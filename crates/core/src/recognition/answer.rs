@@ -39,9 +39,8 @@ named!(
 #[derive(Clone, Copy, Debug)]
 pub struct Evidence<'a> {
     touches: &'a [Imprint],
-    noise: Noise,
-    /// Whether taxels are known to flip, as the noise says.
-    is_noisy: bool,
+    noise: Option<&'a Noise>,
+    dead: Option<&'a Imprint>,
     /// A shape fits a touch if at most this many taxels differ. With None, 2 and one for every 20 taxels of the outline
     /// (CE of the main region); under a given noise at least as many as flip in 999 of 1,000 touches.
     pub tolerance: Option<u32>,
@@ -56,8 +55,8 @@ impl<'a> Evidence<'a> {
     pub fn of(touches: &'a [Imprint]) -> Self {
         Self {
             touches,
-            noise: Noise::default(),
-            is_noisy: false,
+            noise: None,
+            dead: None,
             tolerance: None,
             reject_below: None,
         }
@@ -66,21 +65,23 @@ impl<'a> Evidence<'a> {
     /// Assumes that taxels fail as the noise says. Without any flips, only the imprints of the model's own poses count,
     /// and nothing is fitted. None leaves the evidence as it is.
     #[must_use]
-    pub fn under<'n>(mut self, noise: impl Into<Option<&'n Noise>>) -> Self {
-        if let Some(noise) = noise.into() {
-            (self.noise, self.is_noisy) = (*noise, true);
-        }
+    pub fn under(mut self, noise: impl Into<Option<&'a Noise>>) -> Self {
+        self.noise = noise.into().or(self.noise);
         self
     }
 
     /// Leaves the active taxels of `dead` out, in place of those of the noise: they are stuck on or off, or there is no
     /// taxel. None leaves the evidence as it is.
     #[must_use]
-    pub fn without<'d>(mut self, dead: impl Into<Option<&'d Imprint>>) -> Self {
-        if let Some(dead) = dead.into() {
-            self.noise = self.noise.with_dead(*dead);
-        }
+    pub fn without(mut self, dead: impl Into<Option<&'a Imprint>>) -> Self {
+        self.dead = dead.into().or(self.dead);
         self
+    }
+
+    /// Returns the noise that ranks the shapes.
+    fn noise(&self) -> Noise {
+        let noise = self.noise.copied().unwrap_or_default();
+        self.dead.map_or(noise, |&dead| noise.with_dead(dead))
     }
 
     /// Returns how many taxels may differ from a fit of a touch.
@@ -89,7 +90,7 @@ impl<'a> Evidence<'a> {
             let regions = regions(touch);
             let main = main_region(&regions).map(|main| Description::of(&regions[main]).ce);
             let usual = 2 + main.unwrap_or_default() / 20;
-            let flips = self.is_noisy.then(|| self.noise.most_flips(touch.size()));
+            let flips = self.noise.map(|_| self.noise().most_flips(touch.size()));
             usual.max(flips.unwrap_or_default())
         })
     }
@@ -171,7 +172,7 @@ impl Model {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn recognise(&self, evidence: Evidence<'_>) -> Answer {
-        let (noise, touches) = (&evidence.noise, evidence.touches);
+        let (noise, touches) = (&evidence.noise(), evidence.touches);
         let may_flip = noise.flip() > 0.0;
         let (posterior, method, mut nearest) = match noise.dead() {
             None if !may_flip => (self.possible(touches), SearchMethod::Exact, None),
@@ -191,7 +192,7 @@ impl Model {
         let alone = match may_flip {
             false => posterior.only(),
             // A taxel that is dead or may flip makes every shape possible.
-            true if evidence.is_noisy || noise.dead().is_some() => None,
+            true if evidence.noise.is_some() || noise.dead().is_some() => None,
             true => self.possible(touches).only(),
         };
         let is_alone = alone.is_some() && alone == equals.first().copied();
