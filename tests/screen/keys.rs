@@ -457,7 +457,7 @@ fn recognise_steps_through_sets_and_accepts_a_name() {
             "with the outline of the fitted shape, once there is one",
         ),
         (":random-touch<Enter>", "a random touch of "),
-        ("r<Enter>", "the model is ready: nothing was stopped"),
+        ("r<Enter>", "the model is ready"),
     ]);
 }
 

@@ -344,7 +344,7 @@ impl Page for Running {
     }
 }
 
-pub(crate) fn gauge(canvas: &mut Canvas<'_>, done: u64, all: u64, row: Rect) {
+fn gauge(canvas: &mut Canvas<'_>, done: u64, all: u64, row: Rect) {
     let [full, _, empty] = canvas.theme.bar();
     let width = row.width.min(60);
     let filled = u128::from(done.min(all)) * u128::from(width) / u128::from(all.max(1));

@@ -235,8 +235,8 @@ pub static PLACES: &[KeyPlace] = &[
         ("v", &[&CONFUSION], "confusion", "which shapes are confused with which"),
         ("i", &[&PANEL], "answer", "on a narrow screen: the answer or the matrix"),
         ("P", &[&POSES], "", "the outline of the fitted shape"),
-        ("<Enter>", &[&ACCEPT], "", "train the model after a stop"),
-        ("<Esc>r<C-g>q", &[&CANCEL], "close", "stop training; back to the descriptors"),
+        ("<Enter>", &[&ACCEPT], "", "read or train the model again"),
+        ("<Esc>r<C-g>q", &[&CANCEL], "close", "back to the descriptors; stops a training"),
     ]),
     (Context::Confusion, "confusion", "At the confusion matrix", Context::Everywhere, &[
         ("<Left><Right><Up><Down>", &[&CURSOR_LEFT, &CURSOR_RIGHT, &CURSOR_UP, &CURSOR_DOWN],

@@ -52,10 +52,6 @@ pub(crate) struct Recognition {
 
 pub(super) struct Preparation {
     pub(super) choice: ModelChoice,
-    /// The number of poses of all shapes, once it is known.
-    pub(super) poses: Option<u64>,
-    pub(super) done: u64,
-    pub(super) stopping: bool,
     /// What is carried out once the model is ready, unless the user does something else meanwhile.
     request: Option<RecogniseMessage>,
     /// Whether the page was opened for this set: it closes if the set cannot be read.
@@ -168,38 +164,23 @@ pub(crate) fn follow(app: &mut App) {
 struct RecognisePage;
 
 impl Page for RecognisePage {
-    /// Unknown messages go to the matrix. During a training, Cancel and Quit first stop the training and leave the page
-    /// open; a second time they close it.
+    /// Unknown messages go to the matrix.
     fn on(&mut self, app: &mut App, message: &Message) -> Flow {
-        let preparing = app.recognition.preparing.as_mut();
-        if matches!(message, Message::Cancel | Message::Quit) {
-            let Some(preparing) = preparing.filter(|preparing| !preparing.stopping) else {
-                return Flow::Close;
-            };
-            preparing.stopping = true;
-            app.jobs.stop(jobs::Slot::Model);
-            inform(app, "stopping");
+        let page = &mut app.recognition;
+        if *message == Message::Accept {
+            match page.preparing {
+                None if page.trained.is_none() => prepare(app, None, false),
+                None => refuse(app, "the model is ready"),
+                Some(_) => refuse(app, "the model is not ready yet"),
+            }
             return Flow::Stay;
         }
-        let is_ready = app.recognition.trained.is_some();
-        match (message, &mut app.recognition.preparing) {
-            (Message::Accept, Some(preparing)) => {
-                preparing.request = Some(RecogniseMessage::Open);
-                refuse(app, "the model is not ready yet");
-            }
-            (Message::Accept, None) if is_ready => {
-                refuse(app, "the model is ready: nothing was stopped");
-            }
-            (Message::Accept, None) => prepare(app, None, false),
-            (message, preparing) => {
-                if let Some(preparing) = preparing {
-                    preparing.request = None;
-                }
-                match message.clone() {
-                    Message::Recognise(asked) => carry_out(app, asked, true),
-                    message => matrix::update::act(app, message),
-                }
-            }
+        if let Some(preparing) = &mut page.preparing {
+            preparing.request = None;
+        }
+        match message.clone() {
+            Message::Recognise(asked) => carry_out(app, asked, true),
+            message => matrix::update::act(app, message),
         }
         Flow::Stay
     }
@@ -268,7 +249,7 @@ fn carry_out(app: &mut App, asked: RecogniseMessage, is_open: bool) {
                     RecogniseMessage::Touch => touch(app, &trained),
                     _ => app.open(Confusion::new(trained)),
                 },
-                (None, Some(preparing)) if !preparing.stopping => {
+                (None, Some(preparing)) => {
                     preparing.request = Some(asked);
                     inform(app, "a model is prepared first");
                 }
@@ -303,20 +284,12 @@ fn prepare(app: &mut App, choice: Option<ModelChoice>, opened: bool) {
     let known = page.trained.clone().filter(|_| choice == page.choice);
     page.preparing = Some(Preparation {
         choice: choice.clone(),
-        poses: None,
-        done: 0,
-        stopping: false,
         request: None,
         opened,
     });
     page.ask();
     let models = app.jobs.models.clone();
     app.jobs.run(jobs::Slot::Model, move |progress| {
-        progress.counts(|app, progress| {
-            if let Some(preparing) = &mut app.recognition.preparing {
-                preparing.done = progress.poses;
-            }
-        });
         let trained = TrainedModel::prepare(&models, choice, known, progress);
         // They may have changed.
         let stored = models.names();
@@ -419,6 +392,9 @@ fn forget(app: &mut App) {
 }
 
 fn close(app: &mut App) {
+    if app.recognition.preparing.take().is_some() {
+        app.jobs.forget(jobs::Slot::Model);
+    }
     app.shows_panel = false;
     app.held = None;
 }

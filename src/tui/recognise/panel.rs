@@ -28,11 +28,10 @@ use crate::naming::{nearest_in_words, verdict};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Canvas, Flow, Page, Place};
 use crate::tui::app::state::App;
-use crate::tui::explore::work::gauge;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::Context;
 use crate::tui::recognise::RecogniseMessage;
-use crate::tui::recognise::page::{Preparation, Recognition};
+use crate::tui::recognise::page::Recognition;
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::theme::Role;
 use crate::tui::widget::write::{self, narrow};
@@ -64,7 +63,15 @@ impl Page for Recognition {
         let mut panel = Panel { canvas, area, line };
         panel.text(&format!("Recognise: {}", self.choice()), Role::Title);
         match (&self.preparing, self.model()) {
-            (Some(preparing), _) => panel.preparation(preparing),
+            (Some(preparing), _) => {
+                let doing = if preparing.choice.is_read() {
+                    "being read"
+                } else {
+                    "being trained"
+                };
+                let stop = panel.key(&action::CANCEL);
+                panel.text(&format!("{doing}; {stop} stops"), Role::Text);
+            }
             (None, None) => {
                 let again = panel.key(&action::ACCEPT);
                 let text = if self.choice().is_read() {
@@ -113,10 +120,6 @@ impl Page for Recognition {
     fn leaves_matrix(&self) -> bool {
         true
     }
-
-    fn cancels_itself(&self) -> bool {
-        true
-    }
 }
 
 /// The panel while it is drawn: its area, and the next line.
@@ -142,27 +145,6 @@ impl Panel<'_> {
 
     fn key(&self, action: &'static action::Action) -> String {
         self.canvas.keymap.label(Context::Recognise, action)
-    }
-
-    fn preparation(&mut self, preparing: &Preparation) {
-        if preparing.choice.is_read() {
-            return self.text("being read", Role::Text);
-        }
-        let Some(poses) = preparing.poses else {
-            return self.text("being prepared", Role::Text);
-        };
-        let percent = u128::from(preparing.done) * 100 / u128::from(poses.max(1));
-        let text = format!("training: {}, {percent} %", counted(poses, "pose"));
-        self.text(&text, Role::Text);
-        let row = write::row(self.area, self.line);
-        gauge(&mut self.canvas, preparing.done, poses, row);
-        self.line += 1;
-        let text = if preparing.stopping {
-            "stopping".to_owned()
-        } else {
-            format!("{} stops", self.key(&action::CANCEL))
-        };
-        self.text(&text, Role::Quiet);
     }
 
     /// Writes the grid of a model, and the limit of one touch: the error that no method can go below.

@@ -49,11 +49,6 @@ impl TrainedModel {
             if let Some(known) = known.filter(is_same) {
                 return Ok(known);
             }
-            let poses = set.poses();
-            progress.post(move |app| {
-                let preparing = app.recognition.preparing.as_mut();
-                preparing.map(|preparing| preparing.poses.insert(poses));
-            });
         }
         let model = found.ready(progress)?;
         Ok(Arc::new(Self {
