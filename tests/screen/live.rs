@@ -515,6 +515,16 @@ fn watch_accepts_the_flags_of_the_command_line() {
 }
 
 #[test]
+fn a_saved_shape_is_named_at_once() {
+    let mut page = watched(6, "o+++++++");
+    shows(&page, &["shape      none of these: ", "model      library"]);
+    then(&mut page, "<Space><Enter>:save ring<Enter>", &["saved as ring"]);
+    then(&mut page, "ww", &["model      library"]);
+    page.frames(6);
+    shows(&page, &["shape      ring  ", "fits exactly"]);
+}
+
+#[test]
 fn a_reopened_page_uses_the_model_that_it_shows() {
     let mut page = watched(6, "o+++++++");
     shows(&page, &["shape      none of these: ", "model      library"]);

@@ -40,7 +40,7 @@ use crate::cli::commands::export::{Export, KeepFlags, Kept, drawing, written};
 use crate::cli::commands::frame_flags::FrameFlags;
 use crate::cli::commands::model::Table;
 use crate::cli::commands::model::trial::TrialReport;
-use crate::cli::commands::recognise::{Namer, NamingFlags};
+use crate::cli::commands::recognise::{FoundNamer, Namer, NamingFlags};
 use crate::cli::failure::Failure;
 use crate::cli::input::recording::{RecordingFile, damaged, noted, refused};
 use crate::cli::output::charset::Charset;
@@ -191,7 +191,7 @@ impl Frames {
             .pipeline(&cx.settings.watch_request().pipeline)?;
         let found = self.naming.find(&cx.shelf)?;
         let recording = RecordingFile::open(&self.file, self.reading.reading())?;
-        let namer = found.map(|found| found.ready()).transpose()?;
+        let namer = found.map(FoundNamer::ready).transpose()?;
         let answering = Answering {
             asked: &self,
             cx,

@@ -614,7 +614,7 @@ impl LineWriter {
     fn start(stopped: &Arc<AtomicBool>, namer: Option<FoundNamer>) -> Result<Self, Failure> {
         let (lines, waiting) = sync_channel(WAITING);
         let thread = std::thread::Builder::new().spawn(move || {
-            let namer = namer.map(|found| found.ready());
+            let namer = namer.map(FoundNamer::ready);
             Ok(write_lines(&waiting, namer.transpose()?.as_ref()))
         });
         Ok(Self {

@@ -316,7 +316,7 @@ impl ModelChoice {
 }
 
 /// The picture of a stored shape, as `{"picture":"washer"}` means it.
-fn picture(shape: StoredShape) -> NamedShape {
+fn picture(shape: &StoredShape) -> NamedShape {
     NamedShape::new(shape.name.to_string(), Picture::at_home(shape.imprint))
 }
 
@@ -392,7 +392,7 @@ impl Models {
             ModelChoice::Library => self.stored_shapes(&mut left_out),
             ModelChoice::Figures => default_figures(),
             ModelChoice::EqualFigures => equal_figures(),
-            ModelChoice::Shipped => shipped::all().map(picture).collect(),
+            ModelChoice::Shipped => shipped::all().map(|own| picture(&own)).collect(),
             // It was deleted in between.
             ModelChoice::Stored(_) | ModelChoice::File(_) => {
                 return Err(ReadError::new(unknown_set(choice.name(), &self.names())));
@@ -412,14 +412,14 @@ impl Models {
     fn stored_shapes(&self, left_out: &mut Vec<String>) -> Vec<NamedShape> {
         let Ok(entries) = self.library.list() else {
             left_out.push("your own shapes (unreadable folder)".to_owned());
-            return shipped::all().map(picture).collect();
+            return shipped::all().map(|own| picture(&own)).collect();
         };
         let trainable = |name: &str| {
             let stored = self.library.load(name).map_err(|_| "unreadable")?.shape;
             if stored.imprint.is_empty() {
                 return Err("no active taxel");
             }
-            let shape = picture(stored);
+            let shape = picture(&stored);
             let fits = Training::fitting([shape.clone()], GridSteps::COARSE);
             fits.map(|_| shape).map_err(|_| "too large")
         };
