@@ -9,8 +9,8 @@ use taxel_files::formats::value::percent;
 /// On what terms touches are named: those of [`Evidence`]. None and the default leave all to the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Terms {
-    /// A noise of 0 asks for the poses of the model alone.
-    pub noise: Option<Noise>,
+    /// The probability that a taxel flips, from 0 to below ½ as of [`Noise`]; 0 asks for the poses of the model alone.
+    pub noise: Option<f64>,
     /// A shape fits if at most this many taxels differ.
     pub tolerance: Option<u32>,
     pub reject_below: Option<f64>,
@@ -20,17 +20,20 @@ impl Terms {
     /// Names the shape that left some touches. The active taxels of `dead` are left out, such as the cells of a frame
     /// that have no value.
     pub fn answer(&self, model: &Model, touches: &[Imprint], dead: Option<&Imprint>) -> Answer {
-        let evidence = Evidence::of(touches).under(self.noise.as_ref());
-        let mut evidence = evidence.without(dead);
+        let noise = self.noise.and_then(|flip| Noise::new(flip).ok());
+        let mut evidence = Evidence::of(touches).under(noise.as_ref()).without(dead);
         (evidence.tolerance, evidence.reject_below) = (self.tolerance, self.reject_below);
         model.recognise(evidence)
     }
 
+    /// The probability of a flip under which shapes are ranked.
+    pub(crate) fn flip(&self) -> f64 {
+        self.noise.unwrap_or(Noise::default().flip())
+    }
+
     /// The noise and the tolerance, if any is set: `noise 0.02, tolerance 3`.
     pub(crate) fn in_words(&self) -> Option<String> {
-        let noise = self
-            .noise
-            .map(|noise| format!("noise {}", short(noise.flip())));
+        let noise = self.noise.map(|flip| format!("noise {}", short(flip)));
         let tolerance = self.tolerance.map(|taxels| format!("tolerance {taxels}"));
         let set: Vec<String> = noise.into_iter().chain(tolerance).collect();
         (!set.is_empty()).then(|| set.join(", "))

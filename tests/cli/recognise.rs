@@ -132,9 +132,8 @@ fn fitted_again(place: &Place, shapes: &[(&str, &str)], zooms: &str) {
     let train = "model train set.jsonl --positions 5 --angle 0:357:3 --threshold 0.4";
     place.done(&format!("{train} {zooms} --out m.npz --force --quiet"));
     let mut poses = String::new();
-    for number in 0..24 {
+    for (number, (_, shape)) in (0..24).zip(shapes.iter().cycle()) {
         let [x0, y0, angle] = [0.37, 0.53, 17.3].map(|step| step * f64::from(number));
-        let shape = shapes[number as usize % 2].1;
         let (x0, y0, angle) = (6.0 + x0 % 3.0, 5.0 + y0 % 4.0, angle % 360.0);
         poses += &format!("{{{shape},\"x0\":{x0},\"y0\":{y0},\"angle\":{angle}");
         poses += match (shape.contains("picture"), zooms) {

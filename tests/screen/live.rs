@@ -518,7 +518,11 @@ fn watch_accepts_the_flags_of_the_command_line() {
 fn a_saved_shape_is_named_at_once() {
     let mut page = watched(6, "o+++++++");
     shows(&page, &["shape      none of these: ", "model      library"]);
-    then(&mut page, "<Space><Enter>:save ring<Enter>", &["saved as ring"]);
+    then(
+        &mut page,
+        "<Space><Enter>:save ring<Enter>",
+        &["saved as ring"],
+    );
     then(&mut page, "ww", &["model      library"]);
     page.frames(6);
     shows(&page, &["shape      ring  ", "fits exactly"]);

@@ -128,7 +128,7 @@ impl NamingFlags {
 pub(crate) struct TermsFlags {
     /// Each taxel flips with this probability (below 0.5); 0 allows trained poses only
     #[arg(long, value_name = "E", value_parser = noise)]
-    noise: Option<Noise>,
+    noise: Option<f64>,
     /// A shape fits if at most K taxels differ; default 2 or more, by outline and noise
     #[arg(long, value_name = "K", value_parser = whole(0_u32..))]
     tolerance: Option<u32>,
@@ -136,23 +136,23 @@ pub(crate) struct TermsFlags {
 
 impl TermsFlags {
     pub(crate) fn terms(&self) -> Result<Terms, Failure> {
-        let terms = Terms {
-            noise: self.noise,
-            tolerance: self.tolerance,
-            reject_below: None,
-        };
-        if self.tolerance.is_some() && terms.noise.is_some_and(|noise| noise.flip() == 0.0) {
+        if self.tolerance.is_some() && self.noise == Some(0.0) {
             return Err(Failure::usage(
                 "the argument '--tolerance <K>' cannot be used with '--noise 0', which fits no shape",
             ));
         }
-        Ok(terms)
+        Ok(Terms {
+            noise: self.noise,
+            tolerance: self.tolerance,
+            reject_below: None,
+        })
     }
 }
 
-pub(crate) fn noise(text: &str) -> Result<Noise, String> {
+pub(crate) fn noise(text: &str) -> Result<f64, String> {
     let noise = Noise::new(parse_number(text)?);
-    noise.map_err(|error: NoiseError| error.expected().to_owned())
+    let flip = noise.map(|noise| noise.flip());
+    flip.map_err(|error: NoiseError| error.expected().to_owned())
 }
 
 /// A [`Namer`] whose model may have to be trained.

@@ -74,7 +74,7 @@ impl Serialize for Recognition<'_> {
             map.serialize_entry("tied", &tied)?;
         }
         map.serialize_entry("method", answer.method.name())?;
-        map.serialize_entry("noise", &self.namer.terms.noise.unwrap_or_default().flip())?;
+        map.serialize_entry("noise", &self.namer.terms.flip())?;
         map.serialize_entry("at_rim", &answer.at_rim)?;
         let ranking = answer
             .ranking

@@ -17,7 +17,6 @@ use clap::{CommandFactory, FromArgMatches, Parser};
 use taxel_core::figure::FigureKind;
 use taxel_core::frame::{FrameSize, MAX_FRAME_SIDE, Rule};
 use taxel_core::pose::{Anchor, GivenRanges, PoseGrid, default_ranges};
-use taxel_core::recognition::Noise;
 use taxel_core::source::Source;
 use taxel_files::formats::Name;
 use taxel_files::storage::ModelChoice;
@@ -150,7 +149,7 @@ const ON_LIVE: [&str; 7] = [
 const ONLY_ON_LIVE: [&str; 2] = ["at-least", "size"];
 
 /// None leaves it to the model.
-type GivenNoise = Option<Noise>;
+type GivenNoise = Option<f64>;
 
 fn noise(text: &str) -> Result<GivenNoise, String> {
     let is_given = text != "auto";

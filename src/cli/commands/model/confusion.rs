@@ -15,7 +15,7 @@ use taxel_core::index::wide;
 use taxel_core::parameter::number::share;
 use taxel_core::recognition::{
     Classifier, ClassifierEvaluation, ClassifierSettings, Evaluation, GivenDescriptors, Model,
-    NamedShape, Noise, RandomTouches, Rounding,
+    NamedShape, RandomTouches, Rounding,
 };
 use taxel_files::formats::name::folded;
 use taxel_files::formats::value::{counted, csv_line, grouped, percent, percentage};
@@ -278,7 +278,7 @@ impl Confusion {
     ) -> Result<(), Failure> {
         let seed = self.seed.unwrap_or_default();
         let terms = Terms {
-            noise: (self.noise.noise).and_then(|noise| Noise::new(noise.value(0)).ok()),
+            noise: self.noise.noise.map(|noise| noise.value(0)),
             tolerance: self.tolerance,
             reject_below: None,
         };
