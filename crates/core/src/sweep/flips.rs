@@ -451,6 +451,9 @@ pub(crate) struct Exact<'a> {
     orientation: u64,
     /// Drawn when first needed: in most orientations nothing is in doubt.
     boundary: Option<Boundary<Double>>,
+    /// The same in `f64`, which decides first if chords replace curves: then much is in doubt, but little of it by
+    /// rounding.
+    rough: Option<(Boundary<f64>, Overlap<f64>)>,
     /// The positions of the anchor for the last values of x0 and y0.
     positions: Box<[(Option<u64>, Double)]>,
     /// The area in one cell, added up piece by piece.
@@ -471,12 +474,22 @@ impl<'a> Exact<'a> {
             grid,
             orientation,
             boundary: None,
+            rough: None,
             positions: vec![(None, Double::ZERO); 2 * REMEMBERED].into(),
             cell: Overlap::new(1, 1),
             least: least(grid.sensor().threshold()),
             go_on,
             unasked: 0,
             stopped: false,
+        }
+    }
+
+    /// Returns the same for a shape whose curves are replaced by chords.
+    pub(crate) fn of_chords(self) -> Self {
+        let boundary = Boundary::of(&self.grid.at_origin(self.orientation));
+        Self {
+            rough: Some((boundary, Overlap::new(1, 1))),
+            ..self
         }
     }
 
@@ -489,6 +502,14 @@ impl<'a> Exact<'a> {
             self.position(x, false) - whole(column),
             self.position(y, true) - whole(row),
         );
+        if let Some((boundary, cell)) = &mut self.rough {
+            cell.grid.clear();
+            boundary.draw(Point::new(by.x.to_f64(), by.y.to_f64()), cell);
+            let excess = cell.grid.first() - self.grid.sensor().threshold();
+            if excess.abs() > DOUBTFUL {
+                return excess > 0.0;
+            }
+        }
         let boundary = self
             .boundary
             .get_or_insert_with(|| Boundary::of(&self.grid.at_origin(self.orientation)));

@@ -90,7 +90,7 @@ pub(crate) struct Polygonal {
     /// The heights of the level edges, which have no pieces.
     levels: Vec<f64>,
     /// The distance from the threshold below which a coverage is in doubt: a bound of its error.
-    doubt: f64,
+    pub(crate) doubt: f64,
     pieces: Vec<Piece>,
     /// Where `w` has a corner, from left to right.
     corners: Vec<f64>,

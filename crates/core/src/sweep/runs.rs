@@ -113,6 +113,10 @@ impl Shape {
         Self::Polygonal(Polygonal::new(&edges, doubt))
     }
 
+    fn has_chords(&self) -> bool {
+        matches!(self, Self::Polygonal(shape) if shape.doubt > DOUBT)
+    }
+
     /// Notes where taxels in a row of the sensor switch, for the band that begins at `top`.
     fn band(&mut self, top: f64, row: usize, threshold: f64, spans: &mut Spans) {
         match self {
@@ -123,7 +127,7 @@ impl Shape {
 }
 
 /// The largest distance between an ellipse and its chords, in cell sides.
-const HEIGHT: f64 = 1e-4;
+const HEIGHT: f64 = 5e-4;
 
 /// Adds the chords of an ellipse to the edges of a boundary.
 fn chords(ellipse: &Ellipse<f64>, material: Side, edges: &mut Vec<(Point<f64>, Point<f64>)>) {
@@ -187,10 +191,18 @@ impl<'a> Sweeper<'a> {
         let (first, last) = (place(0), place(count - 1));
         let count = i32::try_from(count).unwrap_or(i32::MAX);
         let groups = task.groups.iter();
-        let groups = groups.map(|orientations| Group::new(grid, layout, orientations, task, go_on));
+        let shape = Shape::new(&boundary);
+        let groups = groups.map(|orientations| {
+            let mut group = Group::new(grid, layout, orientations, task, go_on);
+            if shape.has_chords() {
+                group.exact = group.exact.of_chords();
+            }
+            group
+        });
         Self {
             grid,
-            shape: Shape::new(&boundary),
+            groups: groups.collect(),
+            shape,
             report_every: REPORT_EVERY / effort(boundary.edges.len()),
             // Without a boundary there is no row between them.
             height: Extent::of(&at_origin)
@@ -208,7 +220,6 @@ impl<'a> Sweeper<'a> {
             spans: Spans::default(),
             mirrored: Spans::default(),
             mirror_sum: 2.0 * at_origin.centre()[0],
-            groups: groups.collect(),
         }
     }
 
