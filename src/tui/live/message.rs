@@ -44,7 +44,7 @@ pub enum LiveMessage {
     Record,
     Mark,
     NameShape,
-    Terms(Box<Terms>),
+    Terms(Terms),
 }
 
 /// What follows `:watch`: a source, whose name may contain spaces, then flags as on the command line:

@@ -119,11 +119,11 @@ pub(super) fn name_by(app: &mut App, choice: Option<ModelChoice>) {
 }
 
 /// Names the imprints of the source on these terms.
-pub(super) fn name_on(app: &mut App, terms: &Terms) {
+pub(super) fn name_on(app: &mut App, terms: Terms) {
     let Some(page) = update::page(app) else {
         return refuse(app, update::NO_SOURCE);
     };
-    (page.names.terms, page.names.answer) = (*terms, None);
+    (page.names.terms, page.names.answer) = (terms, None);
     page.name();
 }
 

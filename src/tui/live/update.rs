@@ -37,7 +37,7 @@ pub fn act(app: &mut App, asked: &LiveMessage) {
         LiveMessage::Open => open(app),
         LiveMessage::AtLeast(rule) => set_threshold(app, *rule),
         LiveMessage::Size(size) => watch_with(app, *size),
-        LiveMessage::Terms(terms) => names::name_on(app, terms),
+        LiveMessage::Terms(terms) => names::name_on(app, *terms),
         _ => {}
     }
 }

@@ -313,7 +313,7 @@ fn shape(purpose: Purpose, words: &[String], otherwise: Message) -> Result<Messa
 /// Names touches on other terms, on the page that is open.
 fn named_on(app: &App, change: impl FnOnce(&mut Terms)) -> Message {
     let live = app.page::<Live>();
-    let mut terms = Box::new(live.map_or(app.recognition.terms, |page| page.names.terms));
+    let mut terms = live.map_or(app.recognition.terms, |page| page.names.terms);
     change(&mut terms);
     match live {
         Some(_) => Message::Live(LiveMessage::Terms(terms)),

@@ -27,7 +27,7 @@ pub enum RecogniseMessage {
     Forget,
     Confusion,
     Seed(u64),
-    Terms(Box<Terms>),
+    Terms(Terms),
     /// Selects a cell of the confusion matrix: row, column.
     SelectCell(usize, usize),
 }

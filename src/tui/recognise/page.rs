@@ -239,7 +239,7 @@ fn carry_out(app: &mut App, asked: RecogniseMessage, is_open: bool) {
         RecogniseMessage::Keep => keep(app),
         RecogniseMessage::Forget => forget(app),
         RecogniseMessage::Terms(terms) => {
-            app.recognition.terms = *terms;
+            app.recognition.terms = terms;
             app.recognition.ask();
         }
         RecogniseMessage::Touch | RecogniseMessage::Confusion => {
