@@ -55,6 +55,7 @@ fn touches_are_answered_in_words_and_as_json() {
         "bar.txt --model r --noise 0.01",
         "cut.txt --model r --json",
         "odd.txt --model r --ascii",
+        "odd.txt --model r --pose --ascii",
         "odd.txt --model r --noise 0 --ascii",
         "odd.txt --model r --mask square8.txt --tolerance 0",
         "speck.txt --model r",

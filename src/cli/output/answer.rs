@@ -178,16 +178,19 @@ impl Recognition<'_> {
         };
         let is_dead = |column, row| self.dead.is_some_and(|dead| dead.get(column, row));
         let (full, empty) = charset.taxels();
+        // In ASCII, outlines have strokes like a minus.
+        let is_stroke = outlined.is_some() && charset == Charset::Ascii;
+        let missing = if is_stroke { "o " } else { "- " };
         let taxel = |column, row| match (touch.get(column, row), other.get(column, row)) {
             _ if is_dead(column, row) => "x ",
             (true, true) => full,
             (true, false) => "+ ",
-            (false, true) => "- ",
+            (false, true) => missing,
             (false, false) => empty,
         };
         let row = |row| (0..touch.columns()).flat_map(move |column| taxel(column, row).chars());
         let taxels: Vec<Vec<char>> = (0..touch.rows()).map(|own| row(own).collect()).collect();
-        let is_mark = |sign: &char| ['x', '+', '-'].contains(sign);
+        let is_mark = |sign: &char| ['x', '+', '-', 'o'].contains(sign);
         let is_marked = taxels.iter().flatten().any(is_mark);
         if outlined.is_none() && !is_marked {
             return text;
@@ -209,7 +212,7 @@ impl Recognition<'_> {
         }
         if is_marked {
             let both = &full[..full.len() / 2];
-            text += &format!("  {both} both   + only in the touch   - only in the {what}");
+            text += &format!("  {both} both   + only in the touch   {missing}only in the {what}");
             text += if self.dead.is_some() {
                 "   x dead\n"
             } else {
