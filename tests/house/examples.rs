@@ -4,6 +4,9 @@ use std::f64::consts::PI;
 
 use crate::paper::RING_IMPRINTS;
 
+#[path = "../../examples/fits.rs"]
+#[expect(dead_code, reason = "its main prints the report")]
+pub(crate) mod fits;
 #[path = "../../examples/invariance.rs"]
 #[expect(
     dead_code,

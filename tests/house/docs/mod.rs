@@ -38,8 +38,6 @@ const BLOCKS: &[Block] = &[
     ("recognition-confusion", recognition::confusion),
     ("recognition-worth", recognition::worth),
     ("recognition-peers", recognition::peers),
-    ("recognition-sizes", recognition::sizes),
-    ("recognition-want", recognition::want),
     ("recognition-mm", recognition::mm),
     ("recognition-pitch", recognition::pitch),
 ];
@@ -185,6 +183,10 @@ fn every_picture_is_drawn_by_the_program() {
         hold(&Path::new("docs").join(name).with_extension("svg"), &drawn);
     }
     hold(Path::new("docs/touch.svg"), &screen::touch_svg());
+    hold(
+        Path::new("docs/recognition.svg"),
+        &crate::examples::fits::report(),
+    );
 }
 
 #[test]

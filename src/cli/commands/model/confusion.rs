@@ -41,14 +41,20 @@ numbers count touches, one for each pose, multiplied by the weight of its shape
 if the shapes have weights. 'certain' counts the touches whose imprint only one
 shape can leave.
 
+--test touches in random poses between those of the model, and answers as
+'taxel recognise' does with the same --noise and --tolerance; the touches
+themselves have no noise. --foreign also touches shapes that the model does not
+have.
+
 --given, --greedy and --round use descriptors that do not depend on the
 position of the imprint: na, nae, ce, p, f, roundness, area, diagonals,
 side_ratio, filling, cg_cd, cg_cd_direction. CG-CD at full precision is more of
 a fingerprint than a measurement: --round cg_cd=0.01 shows what it is worth when
 measured to a hundredth of a cell.
 
---noise tests touches in random places on the sensor. Imprints that do not fit
-on a smaller --matrix are left out, and standard error says how many.
+Without --test, --noise tests touches in random places on the sensor. Imprints
+that do not fit on a smaller --matrix are left out, and standard error says how
+many.
 
 Classifiers: z takes the shape whose mean is nearest, in standard deviations;
 knn takes the shape of the nearest touches, template that of the nearest
@@ -56,6 +62,7 @@ imprint.
 
 Examples:
   taxel model confusion parts
+  taxel model confusion parts --test 200 --foreign washer key
   taxel model confusion parts --given na,p --json
   taxel model confusion parts --greedy --round cg_cd=0.01
   taxel model confusion parts --classifier all

@@ -35,7 +35,7 @@ const MOST: u64 = 1_000_000_000;
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Noise")]
 pub(super) struct NoiseFlags {
-    /// Test touches whose taxels flip with this probability
+    /// Test touches whose taxels flip with this probability; with --test, answers assume it
     #[arg(long, value_name = "START:END:STEP", value_parser = noise_range, group = "with_noise")]
     pub(super) noise: Option<DecimalRange>,
     /// Also test with N dead taxels, drawn anew for each touch; default 0
