@@ -322,13 +322,13 @@ mod tests {
     fn every_touch_is_counted_once() {
         let model = model();
         let trial = tried(&model, foreign(), 3);
-        for (tally, touches) in [(&trial.known, 120), (&trial.foreign, 40)] {
+        for (tally, touches) in [(&trial.known, 120_u64), (&trial.foreign, 40)] {
             let cells = || tally.confusion.cells();
-            assert_eq!(tally.touches(), touches);
-            assert_eq!(tally.differs.values().sum::<u64>(), touches as u64);
+            assert_eq!(tally.touches(), touches.into());
+            assert_eq!(tally.differs.values().sum::<u64>(), touches);
             let named = cells().filter(|(_, named, _)| *named < 6);
             let named: u128 = named.map(|(_, _, touches)| touches).sum();
-            assert_eq!(named + tally.unknown(), touches);
+            assert_eq!(named + tally.unknown(), touches.into());
         }
         let known = &trial.known;
         assert_eq!(known.right() + known.wrong() + known.unknown(), 120);
@@ -416,8 +416,9 @@ mod tests {
         let medians = [vec![], vec![3], vec![0, 0, 5, 5], vec![0, 4, 5]];
         let medians = medians.map(|all| {
             let mut tally = Trial::new(&model).known;
-            all.iter()
-                .for_each(|own| *tally.differs.entry(*own).or_default() += 1);
+            for own in all {
+                *tally.differs.entry(own).or_default() += 1;
+            }
             tally.median_differs()
         });
         assert_eq!(medians, [None, Some(3), Some(0), Some(4)]);

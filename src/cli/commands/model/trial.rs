@@ -142,9 +142,12 @@ impl TrialReport<'_> {
         if shown.is_empty() {
             return String::new();
         }
-        let title = |&column: &usize| match column == names {
-            true => "unknown ".to_owned(),
-            false => format!("{} ", column + 1),
+        let title = |&column: &usize| {
+            if column == names {
+                "unknown ".to_owned()
+            } else {
+                format!("{} ", column + 1)
+            }
         };
         let titles = columns.iter().map(title);
         let titles = iter::once(String::new()).chain(titles);
