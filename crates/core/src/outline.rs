@@ -316,9 +316,9 @@ impl Form {
         for ring in &mut drawn {
             match ring {
                 DrawnRing::Polygon(points) => {
-                    points
-                        .iter_mut()
-                        .for_each(|point| *point = point.moved(to_centre));
+                    for point in points {
+                        *point = point.moved(to_centre);
+                    }
                 }
                 DrawnRing::Ellipse(own, _) => own.centre = own.centre.moved(to_centre),
             }
@@ -538,7 +538,7 @@ fn arrange(rings: &mut [DrawnRing]) -> Result<(), OutlineError> {
     }
     for piece in &pieces {
         let beside = piece.beside(size);
-        if bins.count(&pieces, beside, None) % 2 == 0 {
+        if bins.count(&pieces, beside, None).is_multiple_of(2) {
             return crossing(piece, piece);
         }
     }
@@ -610,7 +610,7 @@ impl Piece {
 struct Bins {
     top: f64,
     per_height: f64,
-    bins: Vec<Vec<usize>>,
+    lists: Vec<Vec<usize>>,
 }
 
 impl Bins {
@@ -624,12 +624,12 @@ impl Bins {
             top,
             #[expect(clippy::cast_precision_loss, reason = "a number of pieces")]
             per_height: pieces.len() as f64 / (bottom - top).max(f64::MIN_POSITIVE),
-            bins: vec![Vec::new(); pieces.len() + 1],
+            lists: vec![Vec::new(); pieces.len() + 1],
         };
         for (number, piece) in pieces.iter().enumerate() {
             let ends = [piece.from[1], piece.to[1]].map(|height| bins.bin(height));
             for bin in ends[0].min(ends[1])..=ends[0].max(ends[1]) {
-                bins.bins[bin].push(number);
+                bins.lists[bin].push(number);
             }
         }
         bins
@@ -642,12 +642,12 @@ impl Bins {
     )]
     fn bin(&self, height: f64) -> usize {
         let place = (height - self.top) * self.per_height;
-        (place.max(0.0) as usize).min(self.bins.len() - 1)
+        (place.max(0.0) as usize).min(self.lists.len() - 1)
     }
 
     /// Returns two pieces that cross.
     fn crossing<'a>(&self, pieces: &'a [Piece]) -> Option<(&'a Piece, &'a Piece)> {
-        self.bins.iter().find_map(|bin| {
+        self.lists.iter().find_map(|bin| {
             let mut pairs = bin.iter().enumerate().flat_map(|(place, &one)| {
                 bin[place + 1..]
                     .iter()
@@ -659,7 +659,9 @@ impl Bins {
 
     /// Returns how many pieces lie to the left of a point at its height: an odd number of a ring that encloses it.
     fn count(&self, pieces: &[Piece], [x, y]: [f64; 2], without: Option<usize>) -> usize {
-        let own = self.bins[self.bin(y)].iter().map(|&number| &pieces[number]);
+        let own = self.lists[self.bin(y)]
+            .iter()
+            .map(|&number| &pieces[number]);
         let own = own.filter(|piece| Some(piece.ring) != without);
         let passed = own.filter(|piece| (piece.from[1] <= y) != (piece.to[1] <= y));
         passed
@@ -837,7 +839,7 @@ mod tests {
                     f64::from(step / 20) * 0.125 + 2.0,
                 );
                 let angle = f64::from(step * 15 % 360);
-                let figure = figure.clone().at(x0, y0).angle(angle).on(&sensor)?;
+                let figure = figure.at(x0, y0).angle(angle).on(&sensor)?;
                 let outline = outline
                     .clone()
                     .with(X0, x0, &sensor)?

@@ -221,10 +221,11 @@ impl ModelCache {
 /// cache whether a script stays within its poses.
 fn part(
     shape: &NamedShape,
+    steps: GridSteps,
     cache: Option<&ModelCache>,
     progress: &dyn Progress,
 ) -> Result<Model, TrainingError> {
-    let training = Training::fitting([shape.clone()], GridSteps::COARSE)?.with_progress(progress);
+    let training = Training::fitting([shape.clone()], steps)?.with_progress(progress);
     let path = cache.map(|cache| cache.file(&training));
     let kept = path.as_ref().and_then(|path| load_model(path).ok());
     if let Some(model) = kept.filter(|model| *model.head() == training.head()) {
@@ -388,19 +389,24 @@ impl Models {
             return Ok(FoundModel::Read(Box::new(load_whole_model(&path)?)));
         }
         let mut left_out = Vec::new();
-        let shapes = match choice {
-            ModelChoice::Library => self.stored_shapes(&mut left_out),
-            ModelChoice::Figures => default_figures(),
-            ModelChoice::EqualFigures => equal_figures(),
-            ModelChoice::Shipped => shipped::all().map(|own| picture(&own)).collect(),
+        // Figures have few edges, so fine steps take no longer. Pictures in fine steps leave millions of imprints.
+        let (shapes, steps) = match choice {
+            ModelChoice::Library => (self.stored_shapes(&mut left_out), GridSteps::COARSE),
+            ModelChoice::Figures => (default_figures(), GridSteps::FINE),
+            ModelChoice::EqualFigures => (equal_figures(), GridSteps::FINE),
+            ModelChoice::Shipped => {
+                let shapes = shipped::all().map(|own| picture(&own));
+                (shapes.collect(), GridSteps::COARSE)
+            }
             // It was deleted in between.
             ModelChoice::Stored(_) | ModelChoice::File(_) => {
                 return Err(ReadError::new(unknown_set(choice.name(), &self.names())));
             }
         };
-        match Training::fitting(shapes, GridSteps::COARSE) {
+        match Training::fitting(shapes, steps) {
             Ok(set) => Ok(FoundModel::BuiltIn {
                 set,
+                steps,
                 left_out,
                 cache: self.cache.clone(),
             }),
@@ -441,6 +447,8 @@ pub enum FoundModel {
     BuiltIn {
         /// The training of all its shapes, which says what the model will be.
         set: Training<'static>,
+        /// The steps of its poses.
+        steps: GridSteps,
         /// The stored shapes that are not in the set, each with the reason.
         left_out: Vec<String>,
         /// Where models of its shapes are kept.
@@ -471,14 +479,16 @@ impl FoundModel {
     /// # Errors
     /// A sentence, if the training is stopped or memory runs short.
     pub fn ready(self, progress: &dyn Progress) -> Result<Model, String> {
-        let (set, cache) = match self {
+        let (set, steps, cache) = match self {
             Self::Read(model) => return Ok(*model),
-            Self::BuiltIn { set, cache, .. } => (set, cache),
+            Self::BuiltIn {
+                set, steps, cache, ..
+            } => (set, steps, cache),
         };
         let memory = MemoryGuard::new(None, "train a model of fewer shapes (taxel model train)");
         let parts = memory.limit(progress, |progress| {
             let shapes = set.shapes().iter();
-            let parts = shapes.map(|shape| part(shape, cache.as_ref(), progress));
+            let parts = shapes.map(|shape| part(shape, steps, cache.as_ref(), progress));
             parts.collect::<Result<Vec<Model>, TrainingError>>()
         })?;
         let model = parts.and_then(|parts| Ok(Model::united(&parts)?));
