@@ -37,7 +37,7 @@ fn every_reference_pose_has_the_same_answer() {
     for (number, line) in text.lines().enumerate() {
         let case: Value = serde_json::from_str(line).expect("a reference line is JSON");
         let job = case["job"].to_string();
-        let read = Job::read(job.as_bytes(), Sensor::default(), &|_| {
+        let read = Job::read(job.as_bytes(), Sensor::default(), None, &|_| {
             Err("no names here".to_owned())
         });
         let imprint = read.expect("a reference job is valid").imprint(&mut plane);

@@ -10,6 +10,7 @@
 use std::sync::Arc;
 
 use crate::geometry::{Double, Ellipse, Extent, Pen, Point, Real, Side, Solid, Turn};
+use crate::parameter::number::to_decimals;
 use crate::parameter::{Parameter, ParameterError};
 use crate::picture::PICTURE_PARAMETERS;
 use crate::sensor::Sensor;
@@ -111,20 +112,28 @@ impl Outline {
     /// without area, a radius that is not above 0, a number that is not finite or beyond ±1,000,000, or if
     /// rings cross or overlap.
     pub fn new(rings: Vec<Ring>, pitch_mm: Option<f64>) -> Result<Self, OutlineError> {
-        use Parameter::{Angle, X0, Y0, ZoomX, ZoomY};
         let form = Form::new(rings, pitch_mm)?;
-        let at_home = [
+        let outline = Self {
+            form: Arc::new(form),
+            values: Values::default(),
+            name: None,
+        };
+        Ok(outline.at_home())
+    }
+
+    /// Returns the same outline in its own place, as a new one is.
+    #[must_use]
+    pub fn at_home(mut self) -> Self {
+        use Parameter::{Angle, X0, Y0, ZoomX, ZoomY};
+        let home = [
             (X0, 0.0),
             (Y0, 0.0),
             (Angle, 0.0),
             (ZoomX, 1.0),
             (ZoomY, 1.0),
         ];
-        Ok(Self {
-            form: Arc::new(form),
-            values: Values::unchecked(at_home),
-            name: None,
-        })
+        self.values = Values::unchecked(home);
+        self
     }
 
     /// Returns the same outline with the name under which it is stored.
@@ -207,6 +216,32 @@ impl Outline {
             form: Arc::new(form),
             ..self
         })
+    }
+
+    /// Refuses an outline that is longer than the larger side of the sensor, with the zooms but not turned.
+    pub(crate) fn check_size(&self, sensor: &Sensor) -> Result<(), OutlineError> {
+        let zooms = [Parameter::ZoomX, Parameter::ZoomY].map(|zoom| self.values.of(zoom));
+        let [width, height] = self.size();
+        let own = [width * zooms[0], height * zooms[1]];
+        let (length, side) = (own[0].max(own[1]), f64::from(sensor.side()));
+        if length <= side {
+            return Ok(());
+        }
+        let short = |cells: f64| to_decimals(cells, 3);
+        let said = |sides: [f64; 2]| {
+            let text = |unit: f64, name| match sides.map(|cells| short(cells * unit)) {
+                [length, 0.0] => format!("{length} {name}"),
+                [width, height] => format!("{width} × {height} {name}"),
+            };
+            let mm = self.form.pitch_mm.map(|pitch| text(pitch, "mm"));
+            text(1.0, "cells") + &mm.map_or(String::new(), |mm| format!(" ({mm})"))
+        };
+        refused(format!(
+            "{}, longer than the sensor's {} by {}",
+            said(own),
+            said([side, 0.0]),
+            said([length - side, 0.0])
+        ))
     }
 
     /// The number of rotations within a full turn that map the outline onto itself; None if all do.

@@ -1,10 +1,12 @@
 //! The values that files and answers contain, as serde writes them. Keys are those of the tables of parameters
-//! and descriptors. Imprints and the kinds of figures are read, too. Sources, sensors and rules cannot be read by
+//! and descriptors. Imprints, rings and the kinds of figures are read, too. Sources, sensors and rules cannot be read by
 //! themselves: which values are in range depends on the sensor, so files and lines are read as a whole.
 
 use std::borrow::Cow;
+use std::fmt;
 
-use serde::de::{self, Deserializer};
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{self, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde::ser::{Error, SerializeMap, Serializer};
 use serde::{Deserialize, Serialize};
 
@@ -59,6 +61,46 @@ impl Serialize for Ring {
             }
         }
     }
+}
+
+impl<'de> Deserialize<'de> for Ring {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(RingVisitor)
+    }
+}
+
+struct RingVisitor;
+
+impl<'de> Visitor<'de> for RingVisitor {
+    type Value = Ring;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a ring: a list of points, or an object with cx, cy, rx and ry")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, points: A) -> Result<Ring, A::Error> {
+        Vec::deserialize(SeqAccessDeserializer::new(points)).map(Ring::Polygon)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, keys: A) -> Result<Ring, A::Error> {
+        let own = EllipseKeys::deserialize(MapAccessDeserializer::new(keys))?;
+        Ok(Ring::Ellipse(EllipseRing {
+            centre: [own.cx, own.cy],
+            radii: [own.rx, own.ry],
+            angle: own.angle,
+        }))
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EllipseKeys {
+    cx: f64,
+    cy: f64,
+    rx: f64,
+    ry: f64,
+    #[serde(default)]
+    angle: f64,
 }
 
 impl Serialize for SetRule {

@@ -6,7 +6,7 @@ use std::fmt;
 
 use crate::figure::{Figure, FigureKind};
 use crate::geometry::{Pen, Real, Solid};
-use crate::outline::Outline;
+use crate::outline::{Outline, OutlineError};
 use crate::parameter::{Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
 use crate::sensor::Sensor;
@@ -81,6 +81,47 @@ impl Source {
         let value = sensor.check_own(owner, own, parameter, value)?;
         self.put(parameter, value);
         Ok(self)
+    }
+
+    /// Returns the same shape, placed by the values that `value` returns for its parameters, each in range on the
+    /// sensor.
+    ///
+    /// # Errors
+    /// Returns the error of the first value that is missing or out of range.
+    pub fn placed(
+        mut self,
+        sensor: &Sensor,
+        value: impl FnMut(Parameter) -> Option<f64>,
+    ) -> Result<Self, ParameterError> {
+        let values = Values::new(self.parameters(), sensor, value)?;
+        match &mut self {
+            Self::Figure(figure) => figure.values = values,
+            Self::Picture(picture) => picture.values = values,
+            Self::Outline(outline) => outline.values = values,
+        }
+        Ok(self)
+    }
+
+    /// Returns the same shape on a sensor of this pitch: an outline in mm then has another size in cells.
+    ///
+    /// # Errors
+    /// Returns an error if it is then larger than 1,000,000 cells.
+    pub fn at_pitch(self, pitch_mm: f64) -> Result<Self, OutlineError> {
+        match self {
+            Self::Outline(outline) => outline.at_pitch(pitch_mm).map(Self::Outline),
+            other => Ok(other),
+        }
+    }
+
+    /// Refuses an outline whose bounding rectangle before rotation is longer than the larger side of the sensor.
+    ///
+    /// # Errors
+    /// Returns an error that says by how much, also in mm if the outline is in mm.
+    pub fn check_size(&self, sensor: &Sensor) -> Result<(), OutlineError> {
+        match self {
+            Self::Outline(outline) => outline.check_size(sensor),
+            _ => Ok(()),
+        }
     }
 
     /// Returns the kind of figure; None for another shape.

@@ -24,7 +24,7 @@ fn group(number: usize) -> (&'static str, Vec<Parameter>, fn(Parameter) -> Strin
     let is_axis = |own: &Parameter| Axis::ALL.iter().any(|axis| axis.parameter() == *own);
     let sizes = || figure_parameters().filter(|own| !is_axis(own));
     let fitting = |own| match own {
-        Parameter::Threshold => usual(own),
+        Parameter::Threshold | Parameter::Pitch => usual(own),
         _ => "; default large enough for all shapes, at least 16".to_owned(),
     };
     match number {
@@ -34,7 +34,7 @@ fn group(number: usize) -> (&'static str, Vec<Parameter>, fn(Parameter) -> Strin
         3 => ("Sensor", SENSOR_PARAMETERS.to_vec(), usual),
         4 => ("Sensor", MATRIX.to_vec(), usual),
         5 => ("Sensor", SENSOR_PARAMETERS.to_vec(), of_shape),
-        6 => ("Sensor", MATRIX.to_vec(), fitting),
+        6 => ("Sensor", SENSOR_PARAMETERS.to_vec(), fitting),
         _ => ("Sensor", vec![Parameter::Pitch], usual),
     }
 }

@@ -10,11 +10,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use taxel_core::figure::FigureKind;
-use taxel_core::imprint::Imprint;
 use taxel_core::lock::locked;
-use taxel_core::picture::Picture;
 use taxel_core::quote::{as_argument, shortened_message};
 use taxel_core::recognition::NamedShape;
+use taxel_core::source::Source;
 use taxel_files::ReadError;
 use taxel_files::formats::file::{is_missing, without_mark};
 use taxel_files::formats::name::folded;
@@ -32,9 +31,9 @@ pub(crate) struct Shelf {
     pub(crate) folder: Option<PathBuf>,
     /// Whether `--library` names it.
     pub(crate) asked: bool,
-    /// The imprints that [`Shelf::imprint`] has found. A batch keeps using a shape as it was when it was first looked
+    /// The shapes that [`Shelf::source`] has found. A batch keeps using a shape as it was when it was first looked
     /// up.
-    pub(crate) found: Mutex<HashMap<String, Imprint>>,
+    pub(crate) found: Mutex<HashMap<String, Source>>,
 }
 
 /// A folder that cannot exist, because it would be below a device.
@@ -146,15 +145,16 @@ impl Shelf {
         Some(format!("{words} --library{sign}{}", as_argument(folder)))
     }
 
-    pub(crate) fn imprint(&self, name: &str) -> Result<Imprint, LibraryError> {
+    pub(crate) fn source(&self, name: &str) -> Result<Source, LibraryError> {
         // Upper and lower case are the same in names, and only shapes that exist are kept. So the map never outgrows
         // the library, whatever names the input contains.
         let own = folded(name);
-        if let Some(imprint) = locked(&self.found).get(&own) {
-            return Ok(*imprint);
+        if let Some(source) = locked(&self.found).get(&own) {
+            return Ok(source.clone());
         }
-        let shape = self.readable().load(name)?.shape;
-        Ok(*locked(&self.found).entry(own).or_insert(shape.imprint))
+        let source = self.readable().load(name)?.shape.touched_again();
+        locked(&self.found).insert(own, source.clone());
+        Ok(source)
     }
 
     /// Stores a shape and returns its name in the library, which may differ in case. `existing` tells whether an own
@@ -179,29 +179,40 @@ impl Shelf {
 const MAX_SET: u64 = 64 << 20;
 
 /// Reads a set of shapes: shapes of the library, files with a line of JSON for each, or the whole library.
-pub(crate) fn read_set(asked: &SetFlags, shelf: &Shelf) -> Result<Vec<NamedShape>, Failure> {
-    let named = |name, imprint| NamedShape::new(name, Picture::at_home(imprint));
+pub(crate) fn read_set(
+    asked: &SetFlags,
+    pitch: Option<f64>,
+    shelf: &Shelf,
+) -> Result<Vec<NamedShape>, Failure> {
     let mut shapes = Vec::new();
     for what in &asked.what {
         match shelf.locate(what)? {
-            Located::Shape(shape) => shapes.push(named(shape.name.to_string(), shape.imprint)),
-            Located::Input(input) => shapes.extend(set_of_lines(input, shelf)?),
+            Located::Shape(shape) => shapes.push(shape.of_set()),
+            Located::Input(input) => shapes.extend(set_of_lines(input, pitch, shelf)?),
         }
     }
     if asked.library_all {
         let library = shelf.readable();
         for entry in library.list()? {
-            let imprint = library.load(&entry.name)?.shape.imprint;
-            shapes.push(named(entry.name, imprint));
+            shapes.push(library.load(&entry.name)?.shape.of_set());
+        }
+    }
+    if let Some(pitch) = pitch {
+        for shape in &mut shapes {
+            shape.source = shape.source.clone().at_pitch(pitch).named(&shape.name)?;
         }
     }
     Ok(shapes)
 }
 
-fn set_of_lines(input: Input, shelf: &Shelf) -> Result<Vec<NamedShape>, Failure> {
+fn set_of_lines(
+    input: Input,
+    pitch: Option<f64>,
+    shelf: &Shelf,
+) -> Result<Vec<NamedShape>, Failure> {
     let Input { name: place, read } = input;
     let lookup = |name: &str| {
-        let found = shelf.imprint(name);
+        let found = shelf.source(name);
         found.map_err(|error| shelf.refused(error).text)
     };
     let mut text = Vec::new();
@@ -214,7 +225,7 @@ fn set_of_lines(input: Input, shelf: &Shelf) -> Result<Vec<NamedShape>, Failure>
     let mut shapes = Vec::new();
     for (number, line) in (1..).zip(without_mark(&text).split(|&byte| byte == b'\n')) {
         if !line.trim_ascii().is_empty() {
-            let shape = named_shape(line, &lookup).map_err(|error| error.in_line(number));
+            let shape = named_shape(line, pitch, &lookup).map_err(|error| error.in_line(number));
             shapes.push(shape.named(&place)?);
         }
     }

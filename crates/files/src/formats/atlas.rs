@@ -190,7 +190,8 @@ pub fn read(input: impl Read + Seek) -> Result<SweepResult, ReadError> {
     else {
         return Err(in_header("expected source and partly_off, and no shapes"));
     };
-    let source = source.source(&sensor, &no_names).map_err(in_header)?;
+    let source = source.source(&sensor, Some(sensor.pitch_mm()), &no_names);
+    let source = source.map_err(in_header)?;
     let grid = PoseGrid::new(source, sensor, anchor, ranges).map_err(in_header)?;
     let parts = Parts {
         poses: header.poses,

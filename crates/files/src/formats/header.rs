@@ -54,6 +54,9 @@ pub(crate) struct ShapeHeader<Shape> {
     pub(crate) weight: u32,
     /// The number of poses in which the sensor cuts the shape off.
     pub(crate) cut: u64,
+    /// The pitch of an outline in mm; each stored outline has its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) pitch_mm: Option<f64>,
     pub(crate) source: Shape,
 }
 

@@ -1,4 +1,4 @@
-//! One line of `taxel batch`: a figure, a picture or a whole matrix, perhaps with its own sensor; or the values of a
+//! One line of `taxel batch`: a figure, a picture, an outline or a whole matrix, perhaps with its own sensor; or the values of a
 //! real sensor with a threshold.
 
 use std::num::NonZeroU32;
@@ -14,9 +14,10 @@ use taxel_core::touch::Plane;
 
 use crate::error::ReadError;
 use crate::formats::json::{self, WithoutNan};
-use crate::formats::record::{ONE_KEY, Record};
+use crate::formats::named_shape::ShapeLookup;
+use crate::formats::record::{ONE_KEY, Record, wrong_outline};
 
-/// The task in a line: a figure, a picture or a whole matrix, perhaps with its own sensor; or the values of a real
+/// The task in a line: a figure, a picture, an outline or a whole matrix, perhaps with its own sensor; or the values of a real
 /// sensor with a threshold.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
@@ -33,14 +34,16 @@ impl Job {
     /// {"figure":"hexagon","side":3,"x0":2.1,"y0":1.35,"angle":17,"thickness":1}
     /// {"picture":["##","#."],"x0":5,"y0":3,"angle":10,"zoom_x":1.5,"zoom_y":1}
     /// {"picture":"washer","x0":2,"y0":2,"angle":0}
+    /// {"outline":[[[0,0],[6,0],[6,4],[0,4]],{"cx":2,"cy":2,"rx":1,"ry":1}],"x0":5,"y0":3,"angle":10}
     /// {"imprint":[".##.","#..#",".##."]}
     /// {"frame":[[0,3,8],[1,null,12]],"at_least":5}
     /// ```
-    /// A figure or a picture touches the sensor; an imprint is a whole matrix, which is described as it is and has no
+    /// A figure, a picture or an outline touches the sensor; an imprint is a whole matrix, which is described as it is and has no
     /// sensor. Sizes, position and angle have no defaults ([`PARAMETERS`](taxel_core::parameter::PARAMETERS) lists
     /// keys, units and ranges); a figure without `thickness` is solid, and zooms are 1 if they are not given. A
     /// picture is given by its rows, or by a name that `lookup` finds. The sensor is `sensor` with the changes that
-    /// the line makes, as in `"sensor":{"columns":32,"rows":32,"threshold":0.5}`.
+    /// the line makes, as in `"sensor":{"columns":32,"rows":32,"threshold":0.5}`. With `"unit":"mm"`, the sizes of a
+    /// figure and the rings of an outline are divided by the `pitch_mm` of the line's sensor, or else the one given.
     ///
     /// A frame has the values of a sensor in rows, null where there is no cell, and a [`Rule`]:
     /// `at_least`, `percent`, or `low` and `high`. With `least`, pieces of fewer taxels are dropped.
@@ -50,16 +53,19 @@ impl Job {
     pub fn read(
         line: &[u8],
         sensor: Sensor,
-        lookup: &dyn Fn(&str) -> Result<Imprint, String>,
+        pitch_mm: Option<f64>,
+        lookup: &ShapeLookup<'_>,
     ) -> Result<Self, ReadError> {
         let mut record = record(line)?;
         let (imprint, frame) = (record.imprint.take(), record.frame.take());
-        match (record.figure, &record.picture, imprint, frame) {
-            (None, None, Some(imprint), None) => {
+        let touches =
+            record.figure.is_some() || record.picture.is_some() || record.outline.is_some();
+        match (touches, imprint, frame) {
+            (false, Some(imprint), None) => {
                 record.only("imprint", &[])?;
                 Ok(Self::Describe(*imprint))
             }
-            (None, None, None, Some(rows)) => {
+            (false, None, Some(rows)) => {
                 let rule = RuleRecord {
                     at_least: record.at_least.take(),
                     percent: record.percent.take(),
@@ -70,12 +76,15 @@ impl Job {
                 record.only("frame", &[])?;
                 rule.imprint(&rows).map(Self::Describe)
             }
-            (_, _, None, None) => {
+            (_, None, None) => {
+                let own_pitch = record.sensor.as_ref().and_then(|own| own.pitch_mm);
                 let sensor = match record.sensor.take() {
                     Some(own) => own.sensor(sensor).map_err(|error| error.of_key("sensor"))?,
                     None => sensor,
                 };
-                Ok(Self::Touch(sensor, record.source(&sensor, lookup)?))
+                let source = record.source(&sensor, own_pitch.or(pitch_mm), lookup)?;
+                source.check_size(&sensor).map_err(wrong_outline)?;
+                Ok(Self::Touch(sensor, source))
             }
             _ => Err(ReadError::new(ONE_KEY)),
         }

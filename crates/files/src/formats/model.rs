@@ -8,6 +8,7 @@ use taxel_core::recognition::{
     ImprintKey, KeyTable, Model, ModelError, ModelHead, NamedShape, ShapeCount,
 };
 use taxel_core::sensor::{MatrixSize, Sensor};
+use taxel_core::source::Source;
 
 use crate::error::ReadError;
 use crate::formats::header::{ArchiveHeader, MODEL_FORMAT, ShapeHeader};
@@ -85,6 +86,10 @@ pub fn header(head: &ModelHead) -> Vec<u8> {
         name: shape.name.clone(),
         weight: shape.weight,
         cut,
+        pitch_mm: match &shape.source {
+            Source::Outline(outline) => outline.pitch_mm(),
+            _ => None,
+        },
         source: &shape.source,
     });
     header.shapes = Some(shapes.collect());
@@ -108,7 +113,8 @@ pub fn read(input: impl Read + Seek) -> Result<Model, ReadError> {
     };
     let mut shapes = Vec::with_capacity(records.len());
     for shape in &records {
-        let source = shape.source.source(&Sensor::LARGEST, &no_names);
+        let source = &shape.source;
+        let source = source.source(&Sensor::LARGEST, shape.pitch_mm, &no_names);
         let source = source.map_err(in_header)?;
         shapes.push(NamedShape::new(shape.name.clone(), source).weighted(shape.weight));
     }

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 use taxel_core::imprint::Imprint;
+use taxel_core::picture::Picture;
+use taxel_core::recognition::NamedShape;
 use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
 
@@ -24,7 +26,7 @@ pub struct StoredShape {
     pub sensor: Sensor,
     /// The taxels; as many columns and rows as the sensor has.
     pub imprint: Imprint,
-    /// The figure or picture that left the imprint; None if it was drawn by hand.
+    /// The figure, picture or outline that left the imprint; None if it was drawn by hand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub source: Option<Source>,
 }
@@ -72,6 +74,24 @@ impl StoredShape {
         })
     }
 
+    /// The shape as it is touched again: its outline as it was placed, otherwise the picture of its imprint.
+    pub fn touched_again(&self) -> Source {
+        let name = self.name.as_str();
+        match &self.source {
+            Some(Source::Outline(outline)) => outline.clone().named(name).into(),
+            _ => Picture::at_home(self.imprint).named(name).into(),
+        }
+    }
+
+    /// The shape as one of a set, where neither its place, its angle nor its zoom counts.
+    pub fn of_set(&self) -> NamedShape {
+        let source = match self.touched_again() {
+            Source::Outline(outline) => outline.at_home().into(),
+            other => other,
+        };
+        NamedShape::new(self.name.to_string(), source)
+    }
+
     /// Returns the same shape under another name.
     #[must_use]
     pub fn renamed(self, name: Name) -> Self {
@@ -87,17 +107,27 @@ impl StoredShape {
             return Err(ReadError::new("larger than 1 MiB, the limit for a shape"));
         }
         let file: ShapeFile = json::object(without_mark(text))?;
+        let pitch = file.sensor.pitch_mm;
         let sensor = file.sensor.sensor(Sensor::default());
         let sensor = sensor.map_err(|error| error.of_key("sensor"))?;
-        let source = file.source.map(|source| source.source(&sensor, &no_names));
+        let source = file.source;
+        let source = source.map(|own| own.source(&sensor, pitch, &no_names));
         let source = source.transpose().map_err(|error| error.of_key("source"))?;
         Self::new(file.name, sensor, file.imprint, source)
     }
 
     /// Returns the content of the file, with a line per row of the imprint.
     pub fn write(&self) -> String {
-        let mut text = json::pretty(self);
-        text.push('\n');
-        text
+        let Some(source @ Source::Outline(_)) = &self.source else {
+            return json::pretty(self) + "\n";
+        };
+        // A line for each number of thousands of points would exceed the size limit.
+        let source = json::text(source);
+        let head = json::pretty(&Self {
+            source: None,
+            ..self.clone()
+        });
+        let head = head.trim_end_matches("\n}");
+        format!("{head},\n  \"source\": {source}\n}}\n")
     }
 }

@@ -8,7 +8,6 @@ use std::fs;
 use std::io::{BufRead, BufReader, Cursor, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use taxel_core::picture::Picture;
 use taxel_core::progress::Progress;
 use taxel_core::quote::{did_you_mean, shortened};
 use taxel_core::recognition::{
@@ -21,7 +20,7 @@ use xxhash_rust::xxh3::xxh3_128;
 use crate::error::ReadError;
 use crate::formats::file::without_mark;
 use crate::formats::name::folded;
-use crate::formats::{Name, StoredShape, model_header, read_model, write_model};
+use crate::formats::{Name, model_header, read_model, write_model};
 use crate::memory::MemoryGuard;
 use crate::storage::error::FileError;
 use crate::storage::file::{
@@ -316,11 +315,6 @@ impl ModelChoice {
     }
 }
 
-/// The picture of a stored shape, as `{"picture":"washer"}` means it.
-fn picture(shape: &StoredShape) -> NamedShape {
-    NamedShape::new(shape.name.to_string(), Picture::at_home(shape.imprint))
-}
-
 impl fmt::Display for ModelChoice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "model {}", self.name())
@@ -395,7 +389,7 @@ impl Models {
             ModelChoice::Figures => (default_figures(), GridSteps::FINE),
             ModelChoice::EqualFigures => (equal_figures(), GridSteps::FINE),
             ModelChoice::Shipped => {
-                let shapes = shipped::all().map(|own| picture(&own));
+                let shapes = shipped::all().map(|own| own.of_set());
                 (shapes.collect(), GridSteps::COARSE)
             }
             // It was deleted in between.
@@ -418,14 +412,14 @@ impl Models {
     fn stored_shapes(&self, left_out: &mut Vec<String>) -> Vec<NamedShape> {
         let Ok(entries) = self.library.list() else {
             left_out.push("your own shapes (unreadable folder)".to_owned());
-            return shipped::all().map(|own| picture(&own)).collect();
+            return shipped::all().map(|own| own.of_set()).collect();
         };
         let trainable = |name: &str| {
             let stored = self.library.load(name).map_err(|_| "unreadable")?.shape;
             if stored.imprint.is_empty() {
                 return Err("no active taxel");
             }
-            let shape = picture(&stored);
+            let shape = stored.of_set();
             let fits = Training::fitting([shape.clone()], GridSteps::COARSE);
             fits.map(|_| shape).map_err(|_| "too large")
         };
@@ -522,6 +516,7 @@ mod tests {
     use taxel_core::recognition::Evaluation;
 
     use super::*;
+    use crate::formats::StoredShape;
     use crate::storage::library::Expected;
 
     fn training(side: f64) -> Training<'static> {

@@ -33,6 +33,7 @@ use crate::cli::failure::{Failure, Named};
 use crate::cli::input::shapes;
 use crate::cli::output::evaluation::{self, NamedBy, cell, count, summary};
 use crate::cli::output::table::{Record, row, table};
+use crate::cli::settings::Pitch;
 use crate::naming::Terms;
 
 const EXAMPLES: &str = "\
@@ -157,7 +158,7 @@ impl Confusion {
     pub(super) fn run(self, cx: &Context) -> Result<(), Failure> {
         self.check()?;
         let found = find(&self.model, &cx.shelf)?;
-        let foreign = self.foreign_shapes(found.shapes(), cx)?;
+        let foreign = self.foreign_shapes(&found, cx)?;
         self.check_model(&found, foreign.len())?;
         let model = ready(found, self.table.quiet)?;
         if let Some(each) = self.test {
@@ -255,15 +256,14 @@ impl Confusion {
     }
 
     /// The shapes of `--foreign`. One that the model has would be counted as wrong.
-    fn foreign_shapes(
-        &self,
-        known: &[NamedShape],
-        cx: &Context,
-    ) -> Result<Vec<NamedShape>, Failure> {
+    fn foreign_shapes(&self, model: &FoundModel, cx: &Context) -> Result<Vec<NamedShape>, Failure> {
         let (what, library_all) = (self.foreign.clone(), false);
-        let foreign = shapes::read_set(&SetFlags { what, library_all }, &cx.shelf)?;
+        // Millimetres are divided as they were for the model's own shapes.
+        let (given, usual) = (None, cx.settings.sensor.pitch);
+        let pitch = Pitch { given, usual }.of(Some(&model.sensor()));
+        let foreign = shapes::read_set(&SetFlags { what, library_all }, pitch, &cx.shelf)?;
         let is_known = |own: &&NamedShape| {
-            let mut known = known.iter();
+            let mut known = model.shapes().iter();
             known.any(|known| folded(&known.name) == folded(&own.name))
         };
         match foreign.iter().find(is_known) {

@@ -202,14 +202,16 @@ impl Separate {
                 (separation, model.sensor().threshold())
             }
             _ => {
-                let no_shape = |name: &str| cx.shelf.imprint(name).is_err();
+                let no_shape = |name: &str| cx.shelf.source(name).is_err();
                 let is_only_model =
                     |what: &&OsString| is_model(what, cx) && what.to_str().is_none_or(no_shape);
                 if let Some(model) = what.iter().find(is_only_model) {
                     let text = "a model; give one model or several shapes, not both";
                     return Err(Failure::new(text)).named(model.display());
                 }
-                let shapes = shapes::read_set(&self.set, &cx.shelf)?;
+                // With --pitch, what is in mm is read at 1 mm, and each pitch is then a scale of it.
+                let pitch = self.pitch.map(|_| 1.0).or(cx.settings.sensor.pitch);
+                let shapes = shapes::read_set(&self.set, pitch, &cx.shelf)?;
                 (Separation::new(shapes)?, Sensor::default().threshold())
             }
         };
@@ -226,7 +228,7 @@ fn is_model(what: &OsStr, cx: &Context) -> bool {
     match models(&cx.shelf).locate(ModelChoice::from_text(what)) {
         Ok(ModelChoice::Stored(_)) => true,
         Ok(ModelChoice::File(_)) | Err(_) => has_ending(what, "npz"),
-        Ok(built_in) => cx.shelf.imprint(built_in.name()).is_err(),
+        Ok(built_in) => cx.shelf.source(built_in.name()).is_err(),
     }
 }
 

@@ -95,7 +95,8 @@ impl Train {
     /// The place is tried before the work begins. A signal stops the training and leaves no file.
     pub(super) fn run(self, cx: &Context) -> Result<(), Failure> {
         self.check()?;
-        let shapes = shapes::read_set(&self.set, &cx.shelf)?;
+        let pitch = self.sensor.pitch(&cx.settings)?.of(None);
+        let shapes = shapes::read_set(&self.set, pitch, &cx.shelf)?;
         let (sensor, anchor, ranges) = self.grid(&shapes)?;
         let training = Training::new(shapes, sensor, anchor, ranges)?
             .with_shard(self.shard.unwrap_or(Shard::WHOLE))

@@ -2,6 +2,7 @@
 
 use taxel::cli::settings::Settings;
 use taxel_core::imprint::Imprint;
+use taxel_core::picture::Picture;
 use taxel_core::pose::{DecimalRange, MAX_VALUES};
 use taxel_core::sensor::Sensor;
 use taxel_core::sweep::Shard;
@@ -28,10 +29,10 @@ pub(crate) fn shape(bytes: &[u8]) -> bool {
 /// Reads a line of `taxel batch`.
 pub(crate) fn job(bytes: &[u8]) -> bool {
     let lookup = |name: &str| match name {
-        "washer" => Ok(Imprint::empty(Sensor::default().size())),
+        "washer" => Ok(Picture::at_home(Imprint::empty(Sensor::default().size())).into()),
         _ => Err("no shape named so".to_owned()),
     };
-    match Job::read(bytes, Sensor::default(), &lookup) {
+    match Job::read(bytes, Sensor::default(), Some(2.5), &lookup) {
         Ok(job) => {
             let mut plane = Plane::new(Sensor::default());
             let imprint = job.imprint(&mut plane);

@@ -38,10 +38,10 @@ pub(crate) fn model_arrays(bytes: &[u8]) -> bool {
 /// Reads a shape of a set.
 pub(crate) fn named(bytes: &[u8]) -> bool {
     let lookup = |name: &str| match name {
-        "corner" => Ok("##\n#.".parse().expect("rows")),
+        "corner" => Ok(Picture::at_home("##\n#.".parse().expect("rows")).into()),
         _ => Err("no such shape".to_owned()),
     };
-    match named_shape(bytes, &lookup) {
+    match named_shape(bytes, Some(2.5), &lookup) {
         Ok(shape) => {
             let sensor = Sensor::LARGEST;
             let trained = Training::new([shape], sensor, Anchor::Centre, one_pose());
