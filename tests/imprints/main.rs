@@ -37,6 +37,8 @@ mod recognition;
 
 mod noise;
 
+mod outlines;
+
 mod reference;
 
 mod sweep;
