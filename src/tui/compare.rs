@@ -19,7 +19,7 @@ use taxel_files::formats::value;
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::grid::{CellSize, Grid, Look, RULER, Window, beside_rulers};
 use crate::tui::keys::key::Arrow;
@@ -238,7 +238,7 @@ fn difference(descriptor: &Descriptor, first: Value, second: Value) -> Value {
 
 impl Page for Comparison {
     fn on(&mut self, app: &mut App, message: &Message) -> Flow {
-        let Some(area) = app.panes().map(|panes| panes.area(self.place())) else {
+        let Some(area) = app.panes().map(|panes| panes.area(Place::Screen)) else {
             return Flow::Stay;
         };
         let by = match *message {
@@ -265,12 +265,8 @@ impl Page for Comparison {
         Flow::Stay
     }
 
-    fn context(&self) -> Context {
-        Context::Compare
-    }
-
-    fn place(&self) -> Place {
-        Place::Screen
+    fn placed(&self) -> Placed {
+        (Context::Compare, Place::Screen, Wheel::Rows)
     }
 
     fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
@@ -295,10 +291,6 @@ impl Page for Comparison {
 
     fn click(&self, _area: Rect, _at: Position) -> Option<Message> {
         Some(Message::Field(1))
-    }
-
-    fn wheel(&self) -> Wheel {
-        Wheel::Rows
     }
 
     fn has_use_for(&self, message: &Message, area: Rect) -> bool {

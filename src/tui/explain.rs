@@ -6,7 +6,7 @@ use taxel_core::description::{DESCRIPTORS, Descriptor};
 use taxel_files::formats::value;
 
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Canvas, Flow, Page, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::key::Arrow;
@@ -104,8 +104,8 @@ impl Page for Explain {
         Flow::Stay
     }
 
-    fn context(&self) -> Context {
-        Context::Explain
+    fn placed(&self) -> Placed {
+        (Context::Explain, Place::Body, Wheel::Rows)
     }
 
     fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
@@ -121,9 +121,5 @@ impl Page for Explain {
             write::text(buffer, write::row(below, index), theme, line, Role::Text);
         }
         None
-    }
-
-    fn wheel(&self) -> Wheel {
-        Wheel::Rows
     }
 }

@@ -28,7 +28,7 @@ use taxel_files::formats::value::counted;
 use crate::tui::app::change::{refuse, replace};
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Place};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::explore::ranges::RangesMemory;
 use crate::tui::keys::key::Arrow;
@@ -291,12 +291,8 @@ impl Page for FormDialog {
         Flow::Stay
     }
 
-    fn context(&self) -> Context {
-        Context::Form
-    }
-
-    fn place(&self) -> Place {
-        Place::Form
+    fn placed(&self) -> Placed {
+        (Context::Form, Place::Form, Wheel::Idle)
     }
 
     fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {

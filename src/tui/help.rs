@@ -5,13 +5,11 @@
 //! Search: unod   no match        the list stays where it was
 //! ```
 
-use std::borrow::Cow;
-
 use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Canvas, Flow, LinePrompt, Page, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::{Context, HelpLine, Keymap, help};
@@ -145,8 +143,8 @@ impl Page for Help {
         Flow::Stay
     }
 
-    fn context(&self) -> Context {
-        Context::Help
+    fn placed(&self) -> Placed {
+        (Context::Help, Place::Body, Wheel::Rows)
     }
 
     fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
@@ -172,10 +170,6 @@ impl Page for Help {
             write::line(buffer, row, theme, pieces);
         }
         cursor
-    }
-
-    fn wheel(&self) -> Wheel {
-        Wheel::Rows
     }
 
     fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
@@ -215,10 +209,7 @@ pub struct SearchDialog {
     found: Option<(usize, usize)>,
 }
 
-impl LinePrompt for SearchDialog {
-    const CONTEXT: Context = Context::Search;
-    const RESTORES: bool = true;
-
+impl Page for SearchDialog {
     fn on(&mut self, app: &mut App, message: &Message) -> Flow {
         let mut help = self.before.clone();
         let cancelled = matches!(message, Message::Cancel | Message::Quit);
@@ -242,19 +233,21 @@ impl LinePrompt for SearchDialog {
         Flow::Close
     }
 
-    fn label(&self) -> &'static str {
-        "Search: "
+    fn placed(&self) -> Placed {
+        (Context::Search, Place::Prompt, Wheel::Idle)
     }
 
-    fn field(&self) -> &TextField {
-        &self.field
+    /// The page below has to be restored.
+    fn cancels_itself(&self) -> bool {
+        true
     }
 
-    fn behind(&self, _columns: u16) -> Cow<'_, str> {
-        match self.found {
-            _ if self.field.text().is_empty() => "   a key, or a word of what it does".into(),
-            None => "   no match".into(),
-            Some((number, all)) => format!("   {number} of {all}").into(),
-        }
+    fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
+        let found = match self.found {
+            _ if self.field.text().is_empty() => "   a key, or a word of what it does".to_owned(),
+            None => "   no match".to_owned(),
+            Some((number, all)) => format!("   {number} of {all}"),
+        };
+        canvas.prompt(area, "Search: ", &self.field, &found)
     }
 }

@@ -15,7 +15,7 @@ use taxel_files::formats::value::counted;
 use crate::tui::app::change::{compare_with, go_to};
 use crate::tui::app::document::Reading;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::keys::keymap::Context;
 use crate::tui::widget::rows::{ListRows, moved};
@@ -72,8 +72,8 @@ impl Page for HistoryDialog {
         Flow::Stay
     }
 
-    fn context(&self) -> Context {
-        Context::History
+    fn placed(&self) -> Placed {
+        (Context::History, Place::Body, Wheel::Rows)
     }
 
     fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
@@ -96,9 +96,5 @@ impl Page for HistoryDialog {
 
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
         self.visible(area).click(at, self.selected)
-    }
-
-    fn wheel(&self) -> Wheel {
-        Wheel::Rows
     }
 }

@@ -122,6 +122,9 @@ fn useful(app: &App, row: &Binding) -> bool {
     if matches!(row.context, Context::Matrix | Context::Hold | Context::Draw) {
         return messages.any(|message| is_usable(app, message));
     }
+    if row.context == Context::Recognise {
+        return messages.any(|message| app.recognition.has_use_for(message));
+    }
     let Some((page, panes)) = app.top_page().zip(app.panes()) else {
         return true;
     };

@@ -12,6 +12,7 @@ use crate::tui::app::message::{Message, Mouse, MouseKind};
 use crate::tui::app::page::Place;
 use crate::tui::app::state::App;
 use crate::tui::app::{menu, status};
+use crate::tui::keys::keymap::Context;
 use crate::tui::widget::write::taxels;
 
 /// A drag over the taxels.
@@ -136,7 +137,7 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
         if inside(area) && !hidden {
             return page.click(area, at).map(Target::Message);
         }
-        if !page.leaves_matrix() {
+        if page.context() != Context::Recognise {
             return None;
         }
     }

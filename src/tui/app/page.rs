@@ -4,12 +4,9 @@
 //! finds what the mouse points at, without naming any of them.
 
 use std::any::Any;
-use std::borrow::Cow;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
-use taxel_core::imprint::Imprint;
-use taxel_core::source::Source;
 
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
@@ -38,6 +35,9 @@ pub enum Wheel {
     Step = 1,
     Rows = 3,
 }
+
+/// The keys of a page, its place, and how far the wheel scrolls it.
+pub type Placed = (Context, Place, Wheel);
 
 pub type Act = Box<dyn FnOnce(&mut App)>;
 
@@ -82,6 +82,8 @@ impl dyn Page {
 /// What a page is drawn with.
 #[derive(Debug)]
 pub struct Canvas<'a> {
+    /// For the page whose state outlasts it.
+    pub app: &'a App,
     pub theme: &'a Theme,
     pub keymap: &'a Keymap,
     pub buffer: &'a mut Buffer,
@@ -90,6 +92,7 @@ pub struct Canvas<'a> {
 impl<'a> Canvas<'a> {
     pub(crate) fn of(app: &'a App, buffer: &'a mut Buffer) -> Self {
         Self {
+            app,
             theme: &app.theme,
             keymap: &app.keymap,
             buffer,
@@ -99,6 +102,18 @@ impl<'a> Canvas<'a> {
     /// Writes into the first line of an area; what does not fit is cut short.
     pub(crate) fn text(&mut self, area: Rect, text: &str, role: Role) {
         write::text(self.buffer, area, self.theme, text, role);
+    }
+
+    /// Draws a prompt, with a remark behind what is typed. Returns the position of the cursor.
+    pub(crate) fn prompt(
+        self,
+        area: Rect,
+        label: &str,
+        field: &TextField,
+        remark: &str,
+    ) -> Option<Position> {
+        let cursor = write::prompt(self.buffer, area, self.theme, label, field, remark);
+        Some(cursor)
     }
 
     /// The same with pieces in several roles.
@@ -119,15 +134,18 @@ pub trait Page: Any {
     /// Called when it was closed.
     fn closed(self: Box<Self>, _app: &mut App) {}
 
-    /// What is drawn in its place, if its state outlasts it.
-    fn of_app<'a>(&self, _app: &'a App) -> Option<&'a dyn Page> {
-        None
+    fn placed(&self) -> Placed;
+
+    fn context(&self) -> Context {
+        self.placed().0
     }
 
-    fn context(&self) -> Context;
-
     fn place(&self) -> Place {
-        Place::Body
+        self.placed().1
+    }
+
+    fn wheel(&self) -> Wheel {
+        self.placed().2
     }
 
     /// Prompts and questions stand in the line of notices, over the page below.
@@ -144,10 +162,6 @@ pub trait Page: Any {
         None
     }
 
-    fn wheel(&self) -> Wheel {
-        Wheel::Idle
-    }
-
     /// Returns true if its own update handles Cancel and Quit. Otherwise they close the page.
     fn cancels_itself(&self) -> bool {
         false
@@ -156,20 +170,6 @@ pub trait Page: Any {
     /// Hints leave out keys whose messages it has no use for; pressing one shows why it does nothing.
     fn has_use_for(&self, _message: &Message, _area: Rect) -> bool {
         true
-    }
-
-    /// None for no comparison.
-    fn compared_with(&self) -> Option<&Imprint> {
-        None
-    }
-
-    /// Returns the shape that fits the imprint on the matrix, to be drawn over it. There is none by default.
-    fn fitted(&self) -> Option<&Source> {
-        None
-    }
-
-    fn leaves_matrix(&self) -> bool {
-        false
     }
 
     /// Returns the text of the page for the line of notices. It is shown while there is no notice.
@@ -186,60 +186,5 @@ pub trait Page: Any {
     /// Returns an error that a notice must not hide: it is shown after the notice. None by default.
     fn alarm(&self) -> Option<String> {
         None
-    }
-}
-
-/// Every type with this trait is a [`Page`].
-pub trait LinePrompt: Any {
-    const CONTEXT: Context;
-
-    fn on(&mut self, app: &mut App, message: &Message) -> Flow;
-
-    /// Whether Cancel and Quit go to its own update, because the page below has to be restored.
-    const RESTORES: bool = false;
-
-    fn label(&self) -> &str;
-
-    fn field(&self) -> &TextField;
-
-    fn behind(&self, columns: u16) -> Cow<'_, str>;
-
-    fn wrong(&self) -> Option<String> {
-        None
-    }
-
-    /// Does nothing by default.
-    fn draw_offers(&self, _theme: &Theme, _buffer: &mut Buffer, _body: Rect) {}
-}
-
-impl<Prompt: LinePrompt> Page for Prompt {
-    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
-        LinePrompt::on(self, app, message)
-    }
-
-    fn context(&self) -> Context {
-        Prompt::CONTEXT
-    }
-
-    fn place(&self) -> Place {
-        Place::Prompt
-    }
-
-    fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
-        let (label, behind) = (self.label(), self.behind(area.width));
-        let cursor = write::prompt(buffer, area, theme, label, self.field(), &behind);
-        Some(cursor)
-    }
-
-    fn draw_over(&self, theme: &Theme, buffer: &mut Buffer, body: Rect) {
-        self.draw_offers(theme, buffer, body);
-    }
-
-    fn cancels_itself(&self) -> bool {
-        Prompt::RESTORES
-    }
-
-    fn remark(&self, _keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
-        Some((format!("! {}", self.wrong()?), Role::Error))
     }
 }

@@ -4,7 +4,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::change::{from_prompt, refuse};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Act, Canvas, Flow, Page, Place};
+use crate::tui::app::page::{Act, Canvas, Flow, Page, Place, Placed, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::{Context, Keymap};
@@ -65,12 +65,8 @@ impl Question {
 }
 
 impl Page for Question {
-    fn context(&self) -> Context {
-        Context::Question
-    }
-
-    fn place(&self) -> Place {
-        Place::Question
+    fn placed(&self) -> Placed {
+        (Context::Question, Place::Question, Wheel::Idle)
     }
 
     fn draw(&self, _: Canvas<'_>, _: Rect) -> Option<Position> {

@@ -203,7 +203,7 @@ impl App {
 
     pub(in crate::tui) fn context_on(&self, page: Option<&dyn Page>) -> Context {
         match (page, self.held.is_some()) {
-            (Some(page), true) if page.leaves_matrix() => Context::Hold,
+            (Some(page), true) if page.context() == Context::Recognise => Context::Hold,
             (Some(page), _) => page.context(),
             (None, true) => Context::Hold,
             (None, false) if self.pen.is_some() => Context::Draw,
@@ -217,8 +217,7 @@ impl App {
     }
 
     pub(in crate::tui) fn pages(&self) -> impl DoubleEndedIterator<Item = &dyn Page> {
-        let pages = self.pages.iter();
-        pages.map(|page| page.of_app(self).unwrap_or(&**page))
+        self.pages.iter().map(|page| &**page)
     }
 
     pub(crate) fn open(&mut self, page: impl Page) {
@@ -254,9 +253,15 @@ impl App {
         Panes::of(area, &self.reading().imprint, self.halves())
     }
 
+    /// The recognition, if its page is visible.
+    pub(in crate::tui) fn recognising(&self) -> Option<&Recognition> {
+        let is_visible = self.pane()?.context() == Context::Recognise;
+        is_visible.then_some(&self.recognition)
+    }
+
     /// Coverage and the marks of a comparison need a character for each taxel.
     pub(in crate::tui) fn halves(&self) -> bool {
-        let compared = self.pane().and_then(Page::compared_with);
+        let compared = self.recognising().and_then(Recognition::compared_with);
         self.display == Display::Imprint && compared.is_none()
     }
 

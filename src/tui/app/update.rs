@@ -103,10 +103,9 @@ fn perform(app: &mut App, message: Message) {
 /// Handles a message on a page. Help opens over any page, with the keys of that page.
 fn on_page(app: &mut App, mut page: Box<dyn Page>, message: &Message) {
     let place = app.pages.len();
-    let shown = page.of_app(app).unwrap_or(&*page);
-    let (context, cancels_itself) = (app.context_on(Some(shown)), shown.cancels_itself());
+    let context = app.context_on(Some(&*page));
     let flow = match message {
-        Message::Cancel | Message::Quit if !cancels_itself => Flow::Close,
+        Message::Cancel | Message::Quit if !page.cancels_itself() => Flow::Close,
         Message::Help => Flow::push(Help::new(context)),
         Message::Explain => Flow::push(Explain::new(app)),
         message => page.on(app, message),

@@ -18,7 +18,7 @@
 //! have the whole screen. On a low screen the lines below the matrix are left out first. A screen that is too small for
 //! anything says so. Every pane accepts any rectangle, also an empty one.
 //!
-//! A page borrows its own state, `&Theme` and `&Keymap`. What surrounds the pages reads the whole state: this file, the
+//! A page draws its own state, but that of recognition. What surrounds the pages reads the whole state: this file, the
 //! menu, the title, the matrix, the lines at the foot.
 
 use ratatui::buffer::Buffer;

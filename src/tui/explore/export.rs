@@ -1,7 +1,6 @@
 //! The prompts over the results: the filter of the list, and the name of a file.
 
-use std::borrow::Cow;
-
+use ratatui::layout::{Position, Rect};
 use taxel_core::quote::{joined, shortened};
 use taxel_files::formats::file::has_ending;
 use taxel_files::formats::value::grouped;
@@ -9,14 +8,15 @@ use taxel_files::storage::{Existing, atlas_path, is_poses};
 
 use crate::tui::app::change::{inform, refuse, write_file};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Flow, LinePrompt};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::explore::imprints::ImprintList;
 use crate::tui::explore::name_of;
 use crate::tui::explore::results::{Results, TABS, tab_area};
 use crate::tui::explore::work::export;
-use crate::tui::keys::keymap::Context;
+use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::widget::text_field::TextField;
+use crate::tui::widget::theme::Role;
 
 const LONGEST_FILTER: usize = 200;
 
@@ -43,10 +43,7 @@ impl FilterDialog {
     }
 }
 
-impl LinePrompt for FilterDialog {
-    const CONTEXT: Context = Context::Filter;
-    const RESTORES: bool = true;
-
+impl Page for FilterDialog {
     /// The prompt stays open until the filter can be read.
     fn on(&mut self, app: &mut App, message: &Message) -> Flow {
         let Some(results) = app.top_mut::<Results>() else {
@@ -73,26 +70,29 @@ impl LinePrompt for FilterDialog {
         Flow::Stay
     }
 
-    fn label(&self) -> &'static str {
-        "Filter: "
+    fn placed(&self) -> Placed {
+        (Context::Filter, Place::Prompt, Wheel::Idle)
     }
 
-    fn field(&self) -> &TextField {
-        &self.field
+    /// The list has to be restored.
+    fn cancels_itself(&self) -> bool {
+        true
     }
 
-    fn behind(&self, _columns: u16) -> Cow<'_, str> {
-        match &self.kept {
+    fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
+        let kept = match &self.kept {
             _ if self.field.text().trim().is_empty() => {
-                "   such as na>=40 holes=0; empty shows all".into()
+                "   such as na>=40 holes=0; empty shows all".to_owned()
             }
-            Ok(kept) => format!("   {kept}").into(),
-            Err(_) => "".into(),
-        }
+            Ok(kept) => format!("   {kept}"),
+            Err(_) => String::new(),
+        };
+        canvas.prompt(area, "Filter: ", &self.field, &kept)
     }
 
-    fn wrong(&self) -> Option<String> {
-        self.kept.as_ref().err().cloned()
+    fn remark(&self, _keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
+        let reason = self.kept.as_ref().err()?;
+        Some((format!("! {reason}"), Role::Error))
     }
 }
 
@@ -146,9 +146,7 @@ impl ExportDialog {
     }
 }
 
-impl LinePrompt for ExportDialog {
-    const CONTEXT: Context = Context::Export;
-
+impl Page for ExportDialog {
     fn on(&mut self, app: &mut App, message: &Message) -> Flow {
         if *message != Message::Accept {
             self.field.take(message);
@@ -163,20 +161,17 @@ impl LinePrompt for ExportDialog {
         }
     }
 
-    fn label(&self) -> &'static str {
-        self.label
+    fn placed(&self) -> Placed {
+        (Context::Export, Place::Prompt, Wheel::Idle)
     }
 
-    fn field(&self) -> &TextField {
-        &self.field
-    }
-
-    fn behind(&self, _columns: u16) -> Cow<'_, str> {
+    fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
         let endings = self.endings.join(" ");
-        match endings.split_once(' ').filter(|_| self.has_table) {
-            Some((table, others)) => format!("   ({table} page; {others} imprints)").into(),
-            None => format!("   ({endings})").into(),
-        }
+        let endings = match endings.split_once(' ').filter(|_| self.has_table) {
+            Some((table, others)) => format!("   ({table} page; {others} imprints)"),
+            None => format!("   ({endings})"),
+        };
+        canvas.prompt(area, self.label, &self.field, &endings)
     }
 }
 

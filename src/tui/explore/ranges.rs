@@ -21,7 +21,7 @@ use taxel_files::formats::value::{counted, time_in_words};
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Place};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::explore::name_of;
 use crate::tui::explore::work::{measure, sweep};
@@ -274,12 +274,8 @@ impl Page for RangesForm {
         Flow::Stay
     }
 
-    fn context(&self) -> Context {
-        Context::Ranges
-    }
-
-    fn place(&self) -> Place {
-        Place::Form
+    fn placed(&self) -> Placed {
+        (Context::Ranges, Place::Form, Wheel::Idle)
     }
 
     fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {

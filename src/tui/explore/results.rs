@@ -22,7 +22,7 @@ use taxel_files::formats::value::{counted, grouped};
 use crate::tui::app::change::{change, compare_with, inform, refuse};
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::explore::export::{ExportDialog, FilterDialog};
 use crate::tui::explore::imprints::{self, ImprintList, SortColumn};
@@ -370,12 +370,8 @@ impl Page for Results {
         app.results = Some(self);
     }
 
-    fn context(&self) -> Context {
-        self.tab().context
-    }
-
-    fn place(&self) -> Place {
-        Place::Screen
+    fn placed(&self) -> Placed {
+        (self.tab().context, Place::Screen, self.tab().wheel)
     }
 
     fn draw(&self, mut canvas: Canvas<'_>, area: Rect) -> Option<Position> {
@@ -397,10 +393,6 @@ impl Page for Results {
             }
             None => (self.tab().click)(self, write::below(area, 2), at),
         }
-    }
-
-    fn wheel(&self) -> Wheel {
-        self.tab().wheel
     }
 
     fn has_use_for(&self, message: &Message, area: Rect) -> bool {

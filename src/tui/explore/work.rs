@@ -20,7 +20,7 @@ use taxel_files::storage::{Existing, NewFile, PoseFile, atlas_path, is_poses, wr
 
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
 use crate::tui::app::question::Question;
 use crate::tui::app::state::{App, RunState};
 use crate::tui::explore::ranges::{RangesForm, about};
@@ -317,8 +317,8 @@ impl Page for Running {
         Flow::Stay
     }
 
-    fn context(&self) -> Context {
-        Context::Running
+    fn placed(&self) -> Placed {
+        (Context::Running, Place::Body, Wheel::Idle)
     }
 
     fn draw(&self, mut canvas: Canvas<'_>, area: Rect) -> Option<Position> {

@@ -19,7 +19,7 @@ use taxel_files::formats::recording::FrameMark;
 use taxel_files::formats::value::{self, counted, fitting, grouped, measured};
 
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
@@ -57,20 +57,12 @@ impl Page for Live {
         app.live = Some(self);
     }
 
-    fn context(&self) -> Context {
-        Context::Live
-    }
-
-    fn place(&self) -> Place {
-        Place::Screen
+    fn placed(&self) -> Placed {
+        (Context::Live, Place::Screen, Wheel::Step)
     }
 
     fn cancels_itself(&self) -> bool {
         true
-    }
-
-    fn wheel(&self) -> Wheel {
-        Wheel::Step
     }
 
     fn has_use_for(&self, message: &Message, area: Rect) -> bool {

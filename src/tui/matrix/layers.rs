@@ -11,7 +11,6 @@ use ratatui::style::Modifier;
 use taxel_core::description::Description;
 use taxel_core::geometry::{Ellipse, Pen, Point, Side, Solid};
 
-use crate::tui::app::page::Page;
 use crate::tui::app::state::App;
 use crate::tui::grid::Grid;
 use crate::tui::widget::plot::{DOTS, DotCanvas, DotPosition, glyph};
@@ -56,7 +55,7 @@ pub fn draw(app: &App, grid: &Grid, buffer: &mut Buffer) {
     {
         source.draw(&mut dots);
     }
-    let fitted = app.pane().and_then(Page::fitted);
+    let fitted = app.recognising().and_then(|own| own.fitted.as_ref());
     if let Some(source) = fitted.filter(|_| shown(app.layers.fit)) {
         source.draw(&mut dots);
     }

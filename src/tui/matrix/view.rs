@@ -16,7 +16,6 @@ use taxel_core::description::{Region, RegionKind};
 use taxel_core::imprint::Imprint;
 
 use crate::tui::app::document::Reading;
-use crate::tui::app::page::Page;
 use crate::tui::app::state::{App, Display};
 use crate::tui::grid::{CellSize, Grid, Look, beside_rulers};
 use crate::tui::matrix::layers;
@@ -35,7 +34,7 @@ pub fn grid(app: &App, area: Rect) -> Grid {
 pub fn draw(app: &App, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     let (theme, reading, grid) = (&app.theme, app.reading(), grid(app, area));
     let chosen = reading.region(app.chosen()).map(|(_, region)| region);
-    let compared = app.pane().and_then(Page::compared_with);
+    let compared = app.recognising().and_then(|own| own.compared_with());
     let role = |column, row| role_of(reading, chosen, compared, column, row);
     grid.draw_rulers(theme, buffer);
     grid.draw(buffer, |column, row| {

@@ -3,22 +3,20 @@
 //! The earlier commands are those of the running program. Up steps through them, Down through what is offered; between
 //! them is the line that was being typed.
 
-use std::borrow::Cow;
-
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 use taxel_files::formats::Name;
 use taxel_files::formats::name::LONGEST;
 use taxel_files::storage::{Library, ModelChoice, ModelFolder, RememberedFile, ShapeOrigin};
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Flow, LinePrompt};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::files;
 use crate::tui::jobs::answer;
 use crate::tui::keys::key::Arrow;
-use crate::tui::keys::keymap::Context;
+use crate::tui::keys::keymap::{Context, Keymap};
 use crate::tui::prompt::commands::{Names, begun, complete, offers, read, wants_names};
 use crate::tui::shapes::library::sentence;
 use crate::tui::widget::text_field::TextField;
@@ -44,9 +42,7 @@ impl NameDialog {
     }
 }
 
-impl LinePrompt for NameDialog {
-    const CONTEXT: Context = Context::Name;
-
+impl Page for NameDialog {
     /// The prompt stays open until the name is valid.
     fn on(&mut self, app: &mut App, message: &Message) -> Flow {
         match (message, Name::new(self.field.text())) {
@@ -60,22 +56,18 @@ impl LinePrompt for NameDialog {
         Flow::Stay
     }
 
-    fn label(&self) -> &'static str {
-        "Save as: "
+    fn placed(&self) -> Placed {
+        (Context::Name, Place::Prompt, Wheel::Idle)
     }
 
-    fn field(&self) -> &TextField {
-        &self.field
+    fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
+        canvas.prompt(area, "Save as: ", &self.field, "")
     }
 
-    fn behind(&self, _columns: u16) -> Cow<'_, str> {
-        "".into()
-    }
-
-    fn wrong(&self) -> Option<String> {
+    fn remark(&self, _keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
         let text = self.field.text();
         let error = Name::new(text).err().filter(|_| !text.is_empty())?;
-        Some(error.to_string())
+        Some((format!("! {error}"), Role::Error))
     }
 }
 
@@ -215,9 +207,7 @@ fn names(library: &Library, wanted: Names, last_word: &str) -> Result<Vec<String
     }
 }
 
-impl LinePrompt for CommandDialog {
-    const CONTEXT: Context = Context::Command;
-
+impl Page for CommandDialog {
     /// The prompt stays open until a command was understood.
     fn on(&mut self, app: &mut App, message: &Message) -> Flow {
         match message {
@@ -238,18 +228,14 @@ impl LinePrompt for CommandDialog {
         Flow::Stay
     }
 
-    fn label(&self) -> &'static str {
-        ":"
+    fn placed(&self) -> Placed {
+        (Context::Command, Place::Prompt, Wheel::Idle)
     }
 
-    fn field(&self) -> &TextField {
-        &self.field
-    }
-
-    /// As many candidates as fit, and the number of the others; of paths, the last parts.
-    fn behind(&self, columns: u16) -> Cow<'_, str> {
+    /// Behind the line: as many candidates as fit, and the number of the others; of paths, the last parts.
+    fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
         let used = 1 + write::width(self.field.text());
-        let room = usize::from(columns).saturating_sub(used);
+        let room = usize::from(area.width).saturating_sub(used);
         let mut text = String::new();
         for (index, word) in self.candidates.iter().enumerate() {
             let inner = word.strip_suffix('/').unwrap_or(word);
@@ -264,10 +250,10 @@ impl LinePrompt for CommandDialog {
             }
             text = text + gap + word;
         }
-        text.into()
+        canvas.prompt(area, ":", &self.field, &text)
     }
 
-    fn draw_offers(&self, theme: &Theme, buffer: &mut Buffer, body: Rect) {
+    fn draw_over(&self, theme: &Theme, buffer: &mut Buffer, body: Rect) {
         let offers = offers(&self.typed, &self.given, self.page);
         let picked = usize::try_from(self.at - 1).ok();
         let height = body.height.min(9).min(narrow(offers.len()));

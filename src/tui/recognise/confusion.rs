@@ -21,7 +21,7 @@ use taxel_files::formats::value::{counted, grouped, percent};
 
 use crate::tui::app::change::{begin_drawn, refuse};
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Wheel};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::grid::draw_thumbnail;
 use crate::tui::keys::keymap::Context;
@@ -145,12 +145,8 @@ impl Page for Confusion {
         Flow::Stay
     }
 
-    fn context(&self) -> Context {
-        Context::Confusion
-    }
-
-    fn place(&self) -> Place {
-        Place::Screen
+    fn placed(&self) -> Placed {
+        (Context::Confusion, Place::Screen, Wheel::Rows)
     }
 
     /// Returns the position of the cursor.
@@ -204,10 +200,6 @@ impl Page for Confusion {
         let (column, _) = cells.find(|(_, place)| place.contains(at))?;
         let cell = RecogniseMessage::SelectCell(row, column);
         Some(Message::Recognise(cell))
-    }
-
-    fn wheel(&self) -> Wheel {
-        Wheel::Rows
     }
 }
 

@@ -15,7 +15,7 @@ use taxel_files::storage::{ModelChoice, RememberedFile};
 use crate::naming::Terms;
 use crate::tui::app::change::{begin_drawn, inform, refuse};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Place};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
 use crate::tui::app::state::App;
 use crate::tui::jobs::{self, answer};
 use crate::tui::keys::action;
@@ -23,6 +23,7 @@ use crate::tui::keys::keymap::Context;
 use crate::tui::matrix;
 use crate::tui::recognise::RecogniseMessage;
 use crate::tui::recognise::confusion::Confusion;
+use crate::tui::recognise::panel;
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::write::other;
 
@@ -46,7 +47,7 @@ pub(crate) struct Recognition {
     /// The shape of the answer, fitted to the touch on the matrix.
     pub(crate) fitted: Option<Source>,
     /// What it leaves there; if nothing is fitted, the nearest imprint of the model.
-    pub(super) like: Option<Imprint>,
+    like: Option<Imprint>,
     random: Pcg64,
 }
 
@@ -110,6 +111,21 @@ impl Recognition {
     pub(super) fn other_threshold(&self) -> Option<f64> {
         let trained = self.model()?.model.sensor().threshold();
         self.threshold.filter(|&threshold| threshold != trained)
+    }
+
+    pub(crate) fn compared_with(&self) -> Option<&Imprint> {
+        self.like.as_ref().filter(|&like| *like != self.present)
+    }
+
+    pub(crate) fn has_use_for(&self, message: &Message) -> bool {
+        match message {
+            Message::Recognise(RecogniseMessage::Keep) => self.is_new_touch(),
+            Message::Recognise(RecogniseMessage::Forget) => !self.kept.is_empty(),
+            Message::Recognise(RecogniseMessage::Touch | RecogniseMessage::Confusion) => {
+                self.preparing.is_some() || self.model().is_some()
+            }
+            _ => true,
+        }
     }
 
     fn ask(&mut self) {
@@ -189,19 +205,12 @@ impl Page for RecognisePage {
         close(app);
     }
 
-    fn of_app<'a>(&self, app: &'a App) -> Option<&'a dyn Page> {
-        Some(&app.recognition)
+    fn placed(&self) -> Placed {
+        (Context::Recognise, Place::Panel, Wheel::Idle)
     }
 
-    fn context(&self) -> Context {
-        Context::Recognise
-    }
-
-    fn place(&self) -> Place {
-        Place::Panel
-    }
-
-    fn draw(&self, _: Canvas<'_>, _: Rect) -> Option<Position> {
+    fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
+        panel::draw(&canvas.app.recognition, canvas, area);
         None
     }
 }

@@ -16,21 +16,17 @@
 //!                             +--------------------------------------------+
 //! ```
 
-use ratatui::layout::{Position, Rect};
+use ratatui::layout::Rect;
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::number::{share, short};
 use taxel_core::pose::Axis;
 use taxel_core::recognition::AnswerState;
-use taxel_core::source::Source;
 use taxel_files::formats::value::{counted, decimal, percent};
 
 use crate::naming::{nearest_in_words, verdict};
-use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Place};
-use crate::tui::app::state::App;
+use crate::tui::app::page::Canvas;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::Context;
-use crate::tui::recognise::RecogniseMessage;
 use crate::tui::recognise::page::Recognition;
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::theme::Role;
@@ -45,80 +41,42 @@ const LEAST: f64 = 0.001;
 /// The lines below the list of shapes that are left free for the kept touches.
 const BELOW: usize = 2;
 
-impl Page for Recognition {
-    fn on(&mut self, _: &mut App, _: &Message) -> Flow {
-        Flow::Stay
-    }
-
-    fn context(&self) -> Context {
-        Context::Recognise
-    }
-
-    fn place(&self) -> Place {
-        Place::Panel
-    }
-
-    fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
-        let line = 0;
-        let mut panel = Panel { canvas, area, line };
-        panel.text(&format!("Recognise: {}", self.choice()), Role::Title);
-        match (&self.preparing, self.model()) {
-            (Some(preparing), _) => {
-                let doing = if preparing.choice.is_read() {
-                    "being read"
-                } else {
-                    "being trained"
-                };
-                let stop = panel.key(&action::CANCEL);
-                panel.text(&format!("{doing}; {stop} stops"), Role::Text);
+pub(super) fn draw(page: &Recognition, canvas: Canvas<'_>, area: Rect) {
+    let line = 0;
+    let mut panel = Panel { canvas, area, line };
+    panel.text(&format!("Recognise: {}", page.choice()), Role::Title);
+    match (&page.preparing, page.model()) {
+        (Some(preparing), _) => {
+            let doing = if preparing.choice.is_read() {
+                "being read"
+            } else {
+                "being trained"
+            };
+            let stop = panel.key(&action::CANCEL);
+            panel.text(&format!("{doing}; {stop} stops"), Role::Text);
+        }
+        (None, None) => {
+            let again = panel.key(&action::ACCEPT);
+            let text = if page.choice().is_read() {
+                format!("not read; {again} reads it")
+            } else {
+                format!("not prepared; {again} prepares it")
+            };
+            panel.text(&text, Role::Text);
+        }
+        (None, Some(trained)) => {
+            panel.model(trained);
+            if let Some(terms) = page.terms.in_words() {
+                panel.text(&terms, Role::Text);
             }
-            (None, None) => {
-                let again = panel.key(&action::ACCEPT);
-                let text = if self.choice().is_read() {
-                    format!("not read; {again} reads it")
-                } else {
-                    format!("not prepared; {again} prepares it")
-                };
+            if let Some(threshold) = page.other_threshold() {
+                let [own, here] = [trained.model.sensor().threshold(), threshold].map(short);
+                let text = format!("trained at threshold {own}; here it is {here}");
                 panel.text(&text, Role::Text);
             }
-            (None, Some(trained)) => {
-                panel.model(trained);
-                if let Some(terms) = self.terms.in_words() {
-                    panel.text(&terms, Role::Text);
-                }
-                if let Some(threshold) = self.other_threshold() {
-                    let [own, here] = [trained.model.sensor().threshold(), threshold].map(short);
-                    let text = format!("trained at threshold {own}; here it is {here}");
-                    panel.text(&text, Role::Text);
-                }
-                panel.gap();
-                panel.answer(self, trained);
-            }
+            panel.gap();
+            panel.answer(page, trained);
         }
-        None
-    }
-
-    fn compared_with(&self) -> Option<&Imprint> {
-        self.like.as_ref().filter(|&like| *like != self.present)
-    }
-
-    fn fitted(&self) -> Option<&Source> {
-        self.fitted.as_ref()
-    }
-
-    fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
-        match message {
-            Message::Recognise(RecogniseMessage::Keep) => self.is_new_touch(),
-            Message::Recognise(RecogniseMessage::Forget) => !self.kept.is_empty(),
-            Message::Recognise(RecogniseMessage::Touch | RecogniseMessage::Confusion) => {
-                self.preparing.is_some() || self.model().is_some()
-            }
-            _ => true,
-        }
-    }
-
-    fn leaves_matrix(&self) -> bool {
-        true
     }
 }
 

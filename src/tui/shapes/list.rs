@@ -21,7 +21,7 @@ use taxel_files::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::{Message, Purpose};
-use crate::tui::app::page::{Canvas, Flow, Page, Wheel, find_mut};
+use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel, find_mut};
 use crate::tui::app::state::App;
 use crate::tui::grid::draw_thumbnail;
 use crate::tui::jobs::{Jobs, answer};
@@ -183,8 +183,8 @@ impl Page for ListDialog {
         Flow::Stay
     }
 
-    fn context(&self) -> Context {
-        Context::List
+    fn placed(&self) -> Placed {
+        (Context::List, Place::Body, Wheel::Rows)
     }
 
     fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
@@ -248,10 +248,6 @@ impl Page for ListDialog {
             Message::Accept | Message::Scroll(_) | Message::ScrollTo(_)
         );
         !of_rows || self.entries.is_none() || self.choice().is_some()
-    }
-
-    fn wheel(&self) -> Wheel {
-        Wheel::Rows
     }
 }
 
