@@ -234,27 +234,35 @@ impl Model {
         evidence: Evidence<'_>,
         noise: &Noise,
     ) -> Vec<ShapeFit> {
+        let mut fitted: Vec<ShapeFit> = Vec::new();
         let likely = posterior.ranking.iter().take(MOST_FITTED).enumerate();
-        let likely = likely.filter(|&(rank, &(_, own))| rank == 0 || own >= LIKELY);
-        let fitted = likely.filter_map(|(_, &(shape, probability))| {
+        for (rank, &(shape, probability)) in likely {
+            // No shape that is less likely can be better than one that fits exactly.
+            let is_settled =
+                rank >= posterior.likeliest && fitted.iter().any(|fit| fit.differs == 0);
+            if is_settled || rank > 0 && probability < LIKELY {
+                break;
+            }
             let fits = evidence.touches.iter().map(|touch| {
                 let fit = self.fit(shape, touch, noise.dead())?;
                 Some((fit.differs <= evidence.tolerance(touch), fit))
             });
-            let fits: Vec<(bool, Fit)> = fits.collect::<Option<_>>()?;
+            let Some(fits) = fits.collect::<Option<Vec<(bool, Fit)>>>() else {
+                continue;
+            };
             let differs = fits.iter().map(|(_, fit)| fit.differs).sum();
             let flips = f64::from(differs) * libm::log(noise.ratio());
             let within = fits.iter().all(|&(fits, _)| fits);
             // Of equals, the first.
             let worst = fits.into_iter().rev().max_by_key(|(_, fit)| fit.differs);
-            Some(ShapeFit {
+            fitted.extend(worst.map(|(_, worst)| ShapeFit {
                 odds: libm::log(probability) + flips,
                 differs,
                 fits: within,
-                worst: worst?.1,
-            })
-        });
-        fitted.collect()
+                worst,
+            }));
+        }
+        fitted
     }
 
     /// Returns the probabilities of the shapes under a noise, and which keys were compared.

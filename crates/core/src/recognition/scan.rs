@@ -324,15 +324,13 @@ impl KeyIndex {
         let mut near: Vec<PlacedKey> = Vec::with_capacity(count + 1);
         let order = |own: &PlacedKey| (own.distance, own.key, own.place.1, own.place.0);
         let mut most = u32::MAX;
-        let boxes = self.boxes.iter().filter_map(|of| {
-            let windows = Windows::new(observed, of, u32::MAX);
-            let groups = self.groups[of.groups.clone()].iter();
-            let bounds = groups.filter_map(|group| windows.bound(observed, group.count));
-            Some((bounds.min()?, of, windows))
-        });
-        let mut boxes: Vec<(u32, &KeyBox, Windows)> = boxes.collect();
+        let mut boxes: Vec<_> = self.promising_groups(observed).collect();
         boxes.sort_by_key(|&(bound, ..)| bound);
-        for (_, of, windows) in boxes {
+        for (bound, of, _) in boxes {
+            if bound > most {
+                break;
+            }
+            let windows = Windows::new(observed, of, most);
             for group in &self.groups[of.groups.clone()] {
                 if windows.bound(observed, group.count) > Some(most) {
                     continue;
@@ -367,7 +365,17 @@ impl KeyIndex {
 
     /// Returns the group of the least bound, with its box. None if no key fits the matrix.
     fn promising(&self, observed: &Observed) -> Option<(&KeyBox, &Group)> {
-        let bounds = self.boxes.iter().filter_map(|of| {
+        let bounds = self.promising_groups(observed);
+        let (_, of, group) = bounds.min_by_key(|&(bound, ..)| bound)?;
+        Some((of, group))
+    }
+
+    /// Iterates over the boxes that fit the matrix, each with its group of the least bound, and that bound.
+    fn promising_groups(
+        &self,
+        observed: &Observed,
+    ) -> impl Iterator<Item = (u32, &KeyBox, &Group)> {
+        self.boxes.iter().filter_map(|of| {
             let mut most: Option<BoxPosition> = None;
             observed.each_place((of.width, of.height), |place| {
                 let most = most.get_or_insert(place);
@@ -378,9 +386,7 @@ impl KeyIndex {
             let groups = self.groups[of.groups.clone()].iter();
             let bounds = groups.map(|group| (observed.bound(group.count, most), of, group));
             bounds.min_by_key(|&(bound, ..)| bound)
-        });
-        let (_, of, group) = bounds.min_by_key(|&(bound, ..)| bound)?;
-        Some((of, group))
+        })
     }
 
     /// Counts, for each key, its places at each distance from `least` to `most`; `take` adds the counts to a sum of
