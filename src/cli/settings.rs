@@ -31,9 +31,8 @@ use crate::cli::failure::{Failure, Named};
 use crate::cli::output::charset::Charset;
 use crate::frames::{HISTORY_BYTES, Pipeline, WatchRequest};
 use crate::tui::keys::action::{self, Action};
-use crate::tui::keys::key::{Key, parse};
-use crate::tui::keys::keymap::{Change, Context, Keymap};
-use crate::tui::widget::theme::{ColorDepth, Palette};
+use crate::tui::keys::{Change, Context, Key, Keymap, parse};
+use crate::tui::widget::{ColorDepth, Palette};
 
 const VARIABLE: &str = "TAXEL_CONFIG";
 

@@ -17,15 +17,11 @@ use taxel_core::imprint::Imprint;
 use taxel_core::parameter::number::differing;
 use taxel_files::formats::value;
 
-use crate::tui::app::change::refuse;
-use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
-use crate::tui::app::state::App;
+use crate::tui::app::{App, Canvas, Endpoint, Flow, Message, Page, Place, Placed, Wheel, refuse};
 use crate::tui::grid::{CellSize, Grid, Look, RULER, Window, beside_rulers};
-use crate::tui::keys::key::Arrow;
-use crate::tui::keys::keymap::Context;
-use crate::tui::widget::theme::{Role, Theme, spelling};
+use crate::tui::keys::{Arrow, Context};
 use crate::tui::widget::write::{self, around, narrow};
+use crate::tui::widget::{Role, Theme, spelling};
 
 const GAP: u16 = 2;
 /// The views of imprints: the differences, A, B.

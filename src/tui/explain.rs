@@ -5,13 +5,10 @@ use ratatui::layout::{Position, Rect};
 use taxel_core::description::{DESCRIPTORS, Descriptor};
 use taxel_files::formats::value;
 
-use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
-use crate::tui::app::state::App;
+use crate::tui::app::{App, Canvas, Endpoint, Flow, Message, Page, Place, Placed, Wheel};
 use crate::tui::explore::results::Results;
-use crate::tui::keys::key::Arrow;
-use crate::tui::keys::keymap::Context;
-use crate::tui::widget::theme::Role;
+use crate::tui::keys::{Arrow, Context};
+use crate::tui::widget::Role;
 use crate::tui::widget::write::{self, around, broken, narrow};
 
 const GLOSSARY: &str = include_str!("../../docs/glossary.md");

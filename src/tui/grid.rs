@@ -17,8 +17,8 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 use taxel_core::imprint::{Bounds, Imprint};
 
-use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, narrow, taxels};
+use crate::tui::widget::{Role, Theme};
 
 /// The columns of the ruler of rows.
 pub const RULER: u16 = 3;

@@ -7,16 +7,10 @@
 
 use ratatui::layout::{Position, Rect};
 
-use crate::tui::app::change::refuse;
-use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
-use crate::tui::app::state::App;
-use crate::tui::keys::action;
-use crate::tui::keys::keymap::{Context, HelpLine, Keymap, help};
-use crate::tui::widget::rows::{contains, marked};
-use crate::tui::widget::text_field::TextField;
-use crate::tui::widget::theme::Role;
+use crate::tui::app::{App, Canvas, Endpoint, Flow, Message, Page, Place, Placed, Wheel, refuse};
+use crate::tui::keys::{Context, HelpLine, Keymap, action, help};
 use crate::tui::widget::write::{self, around, broken};
+use crate::tui::widget::{Role, TextField, contains, marked};
 
 /// The columns of the keys.
 const KEYS: usize = 26;

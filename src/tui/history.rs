@@ -12,15 +12,11 @@
 use ratatui::layout::{Position, Rect};
 use taxel_files::formats::value::counted;
 
-use crate::tui::app::change::{compare_with, go_to};
-use crate::tui::app::document::Reading;
-use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
-use crate::tui::app::state::App;
-use crate::tui::keys::keymap::Context;
-use crate::tui::widget::rows::{ListRows, moved};
-use crate::tui::widget::theme::Role;
-use crate::tui::widget::write;
+use crate::tui::app::{
+    App, Canvas, Flow, Message, Page, Place, Placed, Reading, Wheel, compare_with, go_to,
+};
+use crate::tui::keys::Context;
+use crate::tui::widget::{ListRows, Role, moved, write};
 
 pub(crate) struct HistoryDialog {
     /// The start, then the steps.

@@ -19,15 +19,14 @@ use crate::cli::arguments::parameters::SensorFlags;
 use crate::cli::failure::Failure;
 use crate::cli::output::charset::Charset;
 use crate::cli::settings::{Choice, Choosable, Settings};
-use crate::tui::app::message::Message;
-use crate::tui::app::state::{App, Options};
+use crate::tui::app::{App, Message, Options};
 use crate::tui::jobs::Jobs;
 use crate::tui::live::message::{LiveMessage, WatchRequest};
 use crate::tui::script::runner::size;
 use crate::tui::terminal;
 use crate::tui::terminal::input::Input;
 use crate::tui::terminal::settings::{Flags, TerminalSettings};
-use crate::tui::widget::theme::{ColorDepth, Palette};
+use crate::tui::widget::{ColorDepth, Palette};
 
 /// How the screen looks, for terminals that do not describe themselves well.
 #[derive(Debug, Default, clap::Args)]

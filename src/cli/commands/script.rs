@@ -25,11 +25,11 @@ use crate::cli::commands::export;
 use crate::cli::failure::{Failure, Named};
 use crate::cli::input::content::{input_name, open};
 use crate::cli::output::charset::Charset;
-use crate::tui::app::state::Options;
+use crate::tui::app::Options;
 use crate::tui::jobs::Jobs;
-use crate::tui::keys::key::{Key, parse};
+use crate::tui::keys::{Key, parse};
 use crate::tui::script::runner::{self, ScriptFailure, ScriptOptions, Shown, size};
-use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
+use crate::tui::widget::{ColorDepth, Palette, Theme};
 
 const EXAMPLES: &str = r#"One command per line; positions are column,row of the screen, from 0:
   Size 80x24          Set ascii on        Set theme light   Set columns 8

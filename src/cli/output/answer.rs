@@ -15,7 +15,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::plot::draw_over;
 use crate::cli::output::table::bar;
 use crate::naming::verdict;
-use crate::tui::widget::plot::DotCanvas;
+use crate::tui::widget::DotCanvas;
 
 /// The most shapes in words, and the least probability of those after the first, unless their number is given.
 const SHOWN: usize = 8;

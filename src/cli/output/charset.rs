@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use taxel_core::quote::is_invisible;
 
-use crate::tui::widget::theme::spelling;
+use crate::tui::widget::spelling;
 use crate::tui::widget::write::width;
 
 /// Whether all output is ASCII; set once the arguments are read.

@@ -12,8 +12,7 @@ use taxel_files::formats::value::{self, characters, decimal, fitting};
 
 use crate::cli::output::charset::Charset;
 use crate::cli::output::report::ruled;
-use crate::tui::widget::plot::{DotCanvas, glyph};
-use crate::tui::widget::theme::Theme;
+use crate::tui::widget::{DotCanvas, Theme, glyph};
 
 const SIZE: (u16, u16) = (60, 12);
 

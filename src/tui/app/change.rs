@@ -15,11 +15,7 @@ use taxel_core::source::Source;
 use taxel_files::formats::value::counted;
 use taxel_files::storage::Existing;
 
-use crate::tui::app::document::Document;
-use crate::tui::app::history::{DocumentOrigin, History};
-use crate::tui::app::page::Page;
-use crate::tui::app::question::Question;
-use crate::tui::app::state::{App, MoveKind, Notice};
+use crate::tui::app::{App, Document, DocumentOrigin, History, MoveKind, Notice, Page, Question};
 use crate::tui::compare::{Comparison, heading};
 use crate::tui::files;
 use crate::tui::jobs::answer;

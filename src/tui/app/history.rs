@@ -6,7 +6,7 @@ use taxel_files::formats::name::folded;
 use taxel_files::formats::value::counted;
 use taxel_files::storage::ShapeOrigin;
 
-use crate::tui::app::document::{Document, Reading};
+use crate::tui::app::{Document, Reading};
 
 /// All states from one origin to the next belong together, and share the name that they are stored under.
 #[derive(Clone, Debug)]

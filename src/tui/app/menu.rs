@@ -12,18 +12,14 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::tui::app::message::Message;
-use crate::tui::app::state::App;
-use crate::tui::app::status;
 use crate::tui::app::view::Panes;
+use crate::tui::app::{App, Message, status};
 use crate::tui::explore::ExploreMessage;
 use crate::tui::keys::default_keys::MENU;
-use crate::tui::keys::key::Key;
-use crate::tui::keys::keymap::{Binding, Context, Keymap};
+use crate::tui::keys::{Binding, Context, Key, Keymap};
 use crate::tui::matrix::update::is_usable;
-use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write;
 use crate::tui::widget::write::narrow;
+use crate::tui::widget::{Role, Theme, write};
 
 #[derive(Clone, Debug)]
 pub struct Item<'a> {

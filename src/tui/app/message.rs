@@ -5,9 +5,9 @@
 
 use taxel_files::formats::Name;
 
-use crate::tui::app::document::Document;
+use crate::tui::app::Document;
 use crate::tui::explore::ExploreMessage;
-use crate::tui::keys::key::{Arrow, Key};
+use crate::tui::keys::{Arrow, Key};
 use crate::tui::live::message::LiveMessage;
 use crate::tui::recognise::RecogniseMessage;
 

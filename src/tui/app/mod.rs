@@ -35,3 +35,11 @@ pub mod menu;
 pub mod status;
 
 pub mod view;
+
+pub(in crate::tui) use change::*;
+pub use document::*;
+pub use history::*;
+pub use message::*;
+pub use page::*;
+pub(in crate::tui) use question::Question;
+pub use state::*;

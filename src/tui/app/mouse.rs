@@ -7,12 +7,8 @@
 
 use ratatui::layout::{Position, Rect};
 
-use crate::tui::app::change::{change, settle};
-use crate::tui::app::message::{Message, Mouse, MouseKind};
-use crate::tui::app::page::Place;
-use crate::tui::app::state::App;
-use crate::tui::app::{menu, status};
-use crate::tui::keys::keymap::Context;
+use crate::tui::app::{App, Message, Mouse, MouseKind, Place, change, menu, settle, status};
+use crate::tui::keys::Context;
 use crate::tui::widget::write::taxels;
 
 /// A drag over the taxels.

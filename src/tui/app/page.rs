@@ -8,12 +8,9 @@ use std::any::Any;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::tui::app::message::Message;
-use crate::tui::app::state::App;
-use crate::tui::keys::keymap::{Context, Keymap};
-use crate::tui::widget::text_field::TextField;
-use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write;
+use crate::tui::app::{App, Message};
+use crate::tui::keys::{Context, Keymap};
+use crate::tui::widget::{Role, TextField, Theme, write};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {

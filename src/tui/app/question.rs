@@ -2,12 +2,10 @@
 
 use ratatui::layout::{Position, Rect};
 
-use crate::tui::app::change::{from_prompt, refuse};
-use crate::tui::app::message::Message;
-use crate::tui::app::page::{Act, Canvas, Flow, Page, Place, Placed, Wheel};
-use crate::tui::app::state::App;
-use crate::tui::keys::action;
-use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::app::{
+    Act, App, Canvas, Flow, Message, Page, Place, Placed, Wheel, from_prompt, refuse,
+};
+use crate::tui::keys::{Context, Keymap, action};
 use crate::tui::matrix;
 
 /// Leaving it without an answer does nothing.

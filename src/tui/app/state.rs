@@ -10,25 +10,23 @@ use taxel_core::imprint::{Bounds, Imprint};
 use taxel_core::sensor::Sensor;
 use taxel_files::formats::StoredShape;
 
-use crate::tui::app::document::{Document, Reading};
-use crate::tui::app::history::{History, StoredName};
-use crate::tui::app::message::Message;
 use crate::tui::app::mouse::Paint;
-use crate::tui::app::page::{Page, Place, find, find_mut};
 use crate::tui::app::view::Panes;
+use crate::tui::app::{
+    Document, History, Message, Page, Place, Reading, StoredName, find, find_mut,
+};
 use crate::tui::explore::results::Results;
 use crate::tui::form::{FormDialog, FormMemory};
 use crate::tui::grid::Grid;
 use crate::tui::jobs::Jobs;
 use crate::tui::keys::action::{self, Action};
-use crate::tui::keys::key::Key;
-use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::keys::{Context, Key, Keymap};
 use crate::tui::live::message::WatchRequest;
 use crate::tui::live::state::Live;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::matrix::view::grid;
 use crate::tui::recognise::page::Recognition;
-use crate::tui::widget::theme::Theme;
+use crate::tui::widget::Theme;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Options {

@@ -15,17 +15,11 @@ use taxel_core::description::Descriptor;
 use taxel_core::parameter::Parameter;
 use taxel_files::formats::value;
 
-use crate::tui::app::change::is_other;
-use crate::tui::app::document::Reading;
-use crate::tui::app::menu;
-use crate::tui::app::page::{Canvas, Page, Place, find};
-use crate::tui::app::question::Question;
-use crate::tui::app::state::App;
 use crate::tui::app::view::Panes;
-use crate::tui::keys::action;
-use crate::tui::keys::keymap::Context;
+use crate::tui::app::{App, Canvas, Page, Place, Question, Reading, find, is_other, menu};
+use crate::tui::keys::{Context, action};
 use crate::tui::live::update::recording;
-use crate::tui::widget::theme::Role;
+use crate::tui::widget::Role;
 use crate::tui::widget::write::{self, narrow};
 
 /// The text after the source if the shape is not wholly on the sensor. It is never shortened; the text before it is.

@@ -6,11 +6,7 @@ use taxel_files::formats::value::counted;
 use taxel_files::formats::{Name, StoredShape};
 use taxel_files::storage::{Library, LibraryError, Orphan, UNNAMED, shipped};
 
-use crate::tui::app::change::{inform, refuse, resume};
-use crate::tui::app::document::Document;
-use crate::tui::app::history::DocumentOrigin;
-use crate::tui::app::question::Question;
-use crate::tui::app::state::{App, RunState};
+use crate::tui::app::{App, Document, DocumentOrigin, Question, RunState, inform, refuse, resume};
 use crate::tui::explore::ranges::about;
 use crate::tui::jobs::{Jobs, answer};
 use crate::tui::keys::action;

@@ -3,17 +3,14 @@
 //! The top page receives the message, or the matrix if there is none. A notice stays until the next message from the
 //! user.
 
-use crate::tui::app::change::{from_prompt, give_prompt, inform, refuse};
-use crate::tui::app::message::Message;
-use crate::tui::app::mouse;
-use crate::tui::app::page::{Flow, Page};
-use crate::tui::app::state::{App, Notice, RunState, TerminalEffect};
+use crate::tui::app::{
+    App, Flow, Message, Notice, Page, RunState, TerminalEffect, from_prompt, give_prompt, inform,
+    mouse, refuse,
+};
 use crate::tui::explain::Explain;
 use crate::tui::help::Help;
 use crate::tui::jobs::Answer;
-use crate::tui::keys::action;
-use crate::tui::keys::key::Key;
-use crate::tui::keys::keymap::Context;
+use crate::tui::keys::{Context, Key, action};
 use crate::tui::{explore, live, matrix, recognise};
 
 /// The length, in bytes, from which nothing is added to a failure that nobody has read.

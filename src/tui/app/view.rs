@@ -25,14 +25,12 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use taxel_core::imprint::Imprint;
 
-use crate::tui::app::menu;
-use crate::tui::app::page::{Canvas, Page, Place};
-use crate::tui::app::state::App;
 use crate::tui::app::status::{self, title};
+use crate::tui::app::{App, Canvas, Page, Place, menu};
 use crate::tui::grid::{CellSize, RULER, beside_rulers};
 use crate::tui::matrix::{self, panel};
-use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, below, right_of};
+use crate::tui::widget::{Role, Theme};
 
 /// Returns the position of the terminal's cursor; None if it is hidden.
 pub fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {

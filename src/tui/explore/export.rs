@@ -6,17 +6,15 @@ use taxel_files::formats::file::has_ending;
 use taxel_files::formats::value::grouped;
 use taxel_files::storage::{Existing, atlas_path, is_poses};
 
-use crate::tui::app::change::{inform, refuse, write_file};
-use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
-use crate::tui::app::state::App;
+use crate::tui::app::{
+    App, Canvas, Flow, Message, Page, Place, Placed, Wheel, inform, refuse, write_file,
+};
 use crate::tui::explore::imprints::ImprintList;
 use crate::tui::explore::name_of;
 use crate::tui::explore::results::{Results, TABS, tab_area};
 use crate::tui::explore::work::export;
-use crate::tui::keys::keymap::{Context, Keymap};
-use crate::tui::widget::text_field::TextField;
-use crate::tui::widget::theme::Role;
+use crate::tui::keys::{Context, Keymap};
+use crate::tui::widget::{Role, TextField};
 
 const LONGEST_FILTER: usize = 200;
 

@@ -16,16 +16,13 @@ use taxel_core::pose::Axis;
 use taxel_files::formats::atlas::pose_share;
 use taxel_files::formats::value::{counted, grouped, percentage};
 
-use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Wheel};
-use crate::tui::app::state::App;
+use crate::tui::app::{App, Canvas, Message, Wheel};
 use crate::tui::explore::results::{Chosen, Results, Tab, row_style};
 use crate::tui::explore::{ExploreMessage, Findings};
 use crate::tui::grid::{draw_thumbnail, thumbnail_size};
-use crate::tui::keys::keymap::Context;
-use crate::tui::widget::rows::{ListRows, moved};
-use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::keys::Context;
 use crate::tui::widget::write::{self, narrow};
+use crate::tui::widget::{ListRows, Role, Theme, moved};
 
 const VALUE: usize = 8;
 const SHARE: usize = 6;

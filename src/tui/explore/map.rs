@@ -17,18 +17,13 @@ use taxel_core::touch::Plane;
 use taxel_files::formats::PoseMap;
 use taxel_files::formats::value::{counted, grouped};
 
-use crate::tui::app::change::refuse;
-use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Canvas, Wheel};
-use crate::tui::app::state::App;
+use crate::tui::app::{App, Canvas, Endpoint, Message, Wheel, refuse};
 use crate::tui::explore::ExploreMessage;
 use crate::tui::explore::results::{NOTHING_TO_DRAW, Results, Tab, foot};
 use crate::tui::grid::draw_thumbnail;
-use crate::tui::keys::action;
-use crate::tui::keys::keymap::Context;
-use crate::tui::widget::plot::draw_no_room;
-use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::keys::{Context, action};
 use crate::tui::widget::write::{self, below, narrow};
+use crate::tui::widget::{Role, Theme, draw_no_room};
 
 pub(super) static TAB: Tab = Tab {
     title: "map",

@@ -31,19 +31,16 @@ use taxel_core::sweep::SweepResult;
 use taxel_files::formats::value::{counted, fitting};
 use taxel_files::formats::{Plot, axis_ends};
 
-use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Wheel, find_mut};
-use crate::tui::app::state::App;
+use crate::tui::app::{App, Canvas, Message, Wheel, find_mut};
 use crate::tui::explore::ExploreMessage;
 use crate::tui::explore::map::turn;
 use crate::tui::explore::results::{
     Chosen, NOTHING_TO_DRAW, Results, Tab, choose_descriptor, described, foot, named,
 };
 use crate::tui::jobs::{Slot, answer};
-use crate::tui::keys::keymap::Context;
-use crate::tui::widget::plot::{PlotField, draw_no_room};
-use crate::tui::widget::theme::Role;
+use crate::tui::keys::Context;
 use crate::tui::widget::write::{around, below, row};
+use crate::tui::widget::{PlotField, Role, draw_no_room};
 
 const VALUE: usize = 9;
 const LEGEND: &str = "  line: mean, dashes: min, max";

@@ -19,18 +19,12 @@ use taxel_core::sensor::{MatrixSize, Sensor};
 use taxel_core::source::Source;
 use taxel_files::formats::value::{counted, time_in_words};
 
-use crate::tui::app::change::refuse;
-use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
-use crate::tui::app::state::App;
+use crate::tui::app::{App, Canvas, Flow, Message, Page, Place, Placed, Wheel, refuse};
 use crate::tui::explore::name_of;
 use crate::tui::explore::work::{measure, sweep};
-use crate::tui::keys::key::Arrow;
-use crate::tui::keys::keymap::Context;
-use crate::tui::widget::field_list::{Field, FieldList, FieldRows, FormError, draw_choice};
-use crate::tui::widget::text_field::TextField;
-use crate::tui::widget::theme::Role;
+use crate::tui::keys::{Arrow, Context};
 use crate::tui::widget::write::{self, narrow};
+use crate::tui::widget::{Field, FieldList, FieldRows, FormError, Role, TextField, draw_choice};
 
 const LONGEST: usize = 40;
 const LABEL: usize = 8;

@@ -19,11 +19,10 @@ use taxel_core::sweep::SweepResult;
 use taxel_core::touch::Plane;
 use taxel_files::formats::value::{counted, grouped};
 
-use crate::tui::app::change::{change, compare_with, inform, refuse};
-use crate::tui::app::document::{Document, Reading};
-use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
-use crate::tui::app::state::App;
+use crate::tui::app::{
+    App, Canvas, Document, Flow, Message, Page, Place, Placed, Reading, Wheel, change,
+    compare_with, inform, refuse,
+};
 use crate::tui::explore::export::{ExportDialog, FilterDialog};
 use crate::tui::explore::imprints::{self, ImprintList, SortColumn};
 use crate::tui::explore::map::{self, MapState};
@@ -31,11 +30,9 @@ use crate::tui::explore::plots::{self, AngleCurve, find_angles};
 use crate::tui::explore::statistics::{HISTOGRAM, STATISTICS};
 use crate::tui::explore::work::open_ranges;
 use crate::tui::explore::{ExploreMessage, ExploreTab, Findings, name_of};
-use crate::tui::keys::action;
-use crate::tui::keys::keymap::Context;
-use crate::tui::widget::rows::moved;
-use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::keys::{Context, action};
 use crate::tui::widget::write::{self, around, narrow};
+use crate::tui::widget::{Role, Theme, moved};
 
 type Drawing = fn(&Results) -> Result<String, String>;
 

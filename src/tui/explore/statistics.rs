@@ -21,13 +21,11 @@ use taxel_core::atlas::{Histogram, STATISTIC_COLUMNS, features};
 use taxel_core::description::Dimension;
 use taxel_files::formats::value::{counted, grouped, percentage};
 
-use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Wheel};
+use crate::tui::app::{Canvas, Message, Wheel};
 use crate::tui::explore::results::{Results, Tab, choose_descriptor, described, named, row_style};
-use crate::tui::keys::keymap::Context;
-use crate::tui::widget::rows::ListRows;
-use crate::tui::widget::theme::Role;
+use crate::tui::keys::Context;
 use crate::tui::widget::write::{below, row};
+use crate::tui::widget::{ListRows, Role};
 
 const NAME: usize = 24;
 

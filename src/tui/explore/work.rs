@@ -18,19 +18,16 @@ use taxel_files::formats::value::{counted, grouped};
 use taxel_files::memory::MemoryGuard;
 use taxel_files::storage::{Existing, NewFile, PoseFile, atlas_path, is_poses, write_atlas};
 
-use crate::tui::app::change::{inform, refuse};
-use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
-use crate::tui::app::question::Question;
-use crate::tui::app::state::{App, RunState};
+use crate::tui::app::{
+    App, Canvas, Flow, Message, Page, Place, Placed, Question, RunState, Wheel, inform, refuse,
+};
 use crate::tui::explore::ranges::{RangesForm, about};
 use crate::tui::explore::results::Results;
 use crate::tui::explore::{ExploreMessage, Findings, name_of};
 use crate::tui::files::absolute;
 use crate::tui::jobs::{self, JobProgress, answer};
-use crate::tui::keys::keymap::Context;
-use crate::tui::widget::theme::Role;
-use crate::tui::widget::write;
+use crate::tui::keys::Context;
+use crate::tui::widget::{Role, write};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SweepProgress {

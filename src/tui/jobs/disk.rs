@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use taxel_files::storage::{Journal, Library, Orphan};
 
-use crate::tui::app::change::refuse;
+use crate::tui::app::refuse;
 use crate::tui::app::unsaved::UnsavedWork;
 use crate::tui::jobs::{Answer, Post, Posted, caught, refusal};
 

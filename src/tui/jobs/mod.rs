@@ -32,9 +32,8 @@ use taxel_files::storage::{
 };
 use tempfile::TempDir;
 
-use crate::tui::app::change::refuse;
-use crate::tui::app::state::App;
 use crate::tui::app::unsaved::UnsavedWork;
+use crate::tui::app::{App, refuse};
 use crate::tui::explore::work::SweepProgress;
 use crate::tui::files::WriteAccess;
 use crate::tui::jobs::disk::{Disk, DiskJob, DiskWork, UnsavedJournal};

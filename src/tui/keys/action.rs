@@ -3,12 +3,13 @@
 //! [`crate::tui::keys::default_keys`] gives them keys, with a hint and a line of help for each place. Those of the
 //! place work after `:` as well.
 
-use crate::tui::app::message::Message::{self, Explore, Live, Recognise};
-use crate::tui::app::message::{Copied, Endpoint, Erase, Layer};
+use crate::tui::app::{
+    Copied, Endpoint, Erase, Layer,
+    Message::{self, Explore, Live, Recognise},
+};
 use crate::tui::explore::ExploreMessage::{self, Angle, Columns, Feature, NextTab, Tab};
 use crate::tui::explore::ExploreTab;
-use crate::tui::keys::key::Arrow;
-use crate::tui::keys::keymap::Context;
+use crate::tui::keys::{Arrow, Context};
 use crate::tui::live::message::LiveMessage::{self, Threshold, Window};
 use crate::tui::recognise::RecogniseMessage::{self, NextModel};
 

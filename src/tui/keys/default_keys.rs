@@ -8,9 +8,9 @@
 //!
 //! The arrows move the cursor, not `hjkl`: `l` is Load, as in the paper's menu.
 
+use crate::tui::keys::Context;
 #[allow(clippy::wildcard_imports, reason = "the table has all of them")]
 use crate::tui::keys::action::*;
-use crate::tui::keys::keymap::Context;
 
 /// Keys in notation, their actions (the last one is that of all other keys, too), hint and help.
 pub type Row = (

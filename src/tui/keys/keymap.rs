@@ -5,10 +5,10 @@
 
 use std::sync::LazyLock;
 
-use crate::tui::app::message::Message;
+use crate::tui::app::Message;
 use crate::tui::keys::action::Action;
 use crate::tui::keys::default_keys::{KeyPlace, PLACES};
-use crate::tui::keys::key::{Arrow, Key, parse};
+use crate::tui::keys::{Arrow, Key, parse};
 
 /// The places in which keys have a meaning: pages, and parts of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -12,3 +12,6 @@ pub mod action;
 pub mod default_keys;
 
 pub mod keymap;
+
+pub use key::*;
+pub use keymap::*;

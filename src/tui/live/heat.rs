@@ -17,13 +17,13 @@ use taxel_core::matrix::Matrix;
 use taxel_files::formats::value::{self, measured};
 
 use crate::tui::grid::{CellSize, Grid, Look, Window, beside_rulers};
-use crate::tui::keys::key::Arrow;
+use crate::tui::keys::Arrow;
 use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::state::Live;
 use crate::tui::live::trend;
 use crate::tui::recognise::panel::legend;
-use crate::tui::widget::theme::{ColorDepth, Palette, Role, Theme, Tone};
 use crate::tui::widget::write::{below, right_of};
+use crate::tui::widget::{ColorDepth, Palette, Role, Theme, Tone};
 
 /// The least columns of the panel, and those that must remain if taxels are enlarged.
 const PANEL: u16 = 26;

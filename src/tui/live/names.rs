@@ -8,12 +8,11 @@ use taxel_files::storage::ModelChoice;
 
 use crate::frames::WatchRequest;
 use crate::naming::{Terms, nearest_in_words, verdict};
-use crate::tui::app::change::{inform, refuse};
-use crate::tui::app::state::App;
+use crate::tui::app::{App, inform, refuse};
 use crate::tui::jobs::{Slot, answer};
 use crate::tui::live::update;
 use crate::tui::live::view::{Lines, SHAPE};
-use crate::tui::widget::theme::Theme;
+use crate::tui::widget::Theme;
 
 /// The model that names imprints, and its last answer.
 #[derive(Clone, Debug)]

@@ -9,7 +9,7 @@ use taxel_core::matrix::Matrix;
 use taxel_core::parameter::Parameter;
 use taxel_core::sensor::Sensor;
 
-use crate::tui::app::document::Document;
+use crate::tui::app::Document;
 use crate::tui::live::state::Live;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -18,8 +18,7 @@ use taxel_files::storage::{Existing, below_home};
 
 use crate::frames::WatchRequest;
 use crate::frames::recording::{RecordedFrames, Recording};
-use crate::tui::app::change::{inform, refuse};
-use crate::tui::app::state::App;
+use crate::tui::app::{App, inform, refuse};
 use crate::tui::files::WriteAccess;
 use crate::tui::jobs::{answer, caught, start, wait_until_finished};
 use crate::tui::live::feed::{Feed, FrameBatch};

@@ -15,8 +15,8 @@ use taxel_files::formats::value::measured;
 
 use crate::tui::live::reading::round_up;
 use crate::tui::live::state::Live;
-use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, narrow};
+use crate::tui::widget::{Role, Theme};
 
 /// The lines of the least plot: its title and two lines of bars.
 pub(super) const LEAST: u16 = 3;

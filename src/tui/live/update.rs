@@ -9,18 +9,12 @@ use taxel_files::formats::Name;
 use taxel_files::formats::recording::RecordingMetadata;
 use taxel_files::formats::value::counted;
 
-use crate::tui::app::change::{begin, inform, refuse};
-use crate::tui::app::document::Document;
-use crate::tui::app::history::DocumentOrigin;
-use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Flow, find_mut};
-use crate::tui::app::state::App;
-use crate::tui::app::status;
+use crate::tui::app::{
+    App, Document, DocumentOrigin, Endpoint, Flow, Message, begin, find_mut, inform, refuse, status,
+};
 use crate::tui::files;
 use crate::tui::jobs::answer;
-use crate::tui::keys::action;
-use crate::tui::keys::key::Arrow;
-use crate::tui::keys::keymap::Context;
+use crate::tui::keys::{Arrow, Context, action};
 use crate::tui::live::feed::FrameBatch;
 use crate::tui::live::message::{LiveMessage, NamedSource, WatchRequest};
 use crate::tui::live::reading::{self, HeatLayer};

@@ -18,12 +18,8 @@ use taxel_core::imprint::Imprint;
 use taxel_files::formats::recording::FrameMark;
 use taxel_files::formats::value::{self, counted, fitting, grouped, measured};
 
-use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
-use crate::tui::app::state::App;
-use crate::tui::keys::action;
-use crate::tui::keys::key::Arrow;
-use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::app::{App, Canvas, Flow, Message, Page, Place, Placed, Wheel};
+use crate::tui::keys::{Arrow, Context, Keymap, action};
 use crate::tui::live::heat::{self, HeatMap, LivePanes, cells, scale};
 use crate::tui::live::message::{LiveMessage, SourceState};
 use crate::tui::live::reading::{HeatLayer, LiveReading};
@@ -31,8 +27,7 @@ use crate::tui::live::state::{Live, NO_FRAME};
 use crate::tui::live::threshold::{self, progress_text};
 use crate::tui::live::trend;
 use crate::tui::live::update::in_live;
-use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write;
+use crate::tui::widget::{Role, Theme, write};
 
 const LABEL: usize = 11;
 

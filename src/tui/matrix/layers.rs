@@ -11,11 +11,10 @@ use ratatui::style::Modifier;
 use taxel_core::description::Description;
 use taxel_core::geometry::{Ellipse, Pen, Point, Side, Solid};
 
-use crate::tui::app::state::App;
+use crate::tui::app::App;
 use crate::tui::grid::Grid;
-use crate::tui::widget::plot::{DOTS, DotCanvas, DotPosition, glyph};
-use crate::tui::widget::theme::Role;
 use crate::tui::widget::write::narrow;
+use crate::tui::widget::{DOTS, DotCanvas, DotPosition, Role, glyph};
 
 /// The number of straight pieces that an ellipse is drawn in: even on the largest matrix, none is off by a dot.
 const PIECES: u16 = 256;

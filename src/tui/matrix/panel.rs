@@ -14,9 +14,9 @@ use ratatui::layout::Rect;
 use taxel_core::description::{DESCRIPTORS, Description, Descriptor};
 use taxel_files::formats::value;
 
-use crate::tui::app::state::App;
-use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::app::App;
 use crate::tui::widget::write::{self, narrow};
+use crate::tui::widget::{Role, Theme};
 
 const SYMBOL: usize = 7;
 const SYMBOL_AND_KEY: usize = 23;

@@ -15,11 +15,10 @@ use ratatui::layout::{Position, Rect};
 use taxel_core::description::{Region, RegionKind};
 use taxel_core::imprint::Imprint;
 
-use crate::tui::app::document::Reading;
-use crate::tui::app::state::{App, Display};
+use crate::tui::app::{App, Display, Reading};
 use crate::tui::grid::{CellSize, Grid, Look, beside_rulers};
 use crate::tui::matrix::layers;
-use crate::tui::widget::theme::{Glyphs, Role, Theme};
+use crate::tui::widget::{Glyphs, Role, Theme};
 
 /// Returns the places of the taxels in an area. The window follows the cursor, or the described region if that was
 /// changed last.

@@ -19,16 +19,15 @@ use taxel_core::parameter::number::share;
 use taxel_core::recognition::{Evaluation, Model, ShapeCount};
 use taxel_files::formats::value::{counted, grouped, percent};
 
-use crate::tui::app::change::{begin_drawn, refuse};
-use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
-use crate::tui::app::state::App;
+use crate::tui::app::{
+    App, Canvas, Endpoint, Flow, Message, Page, Place, Placed, Wheel, begin_drawn, refuse,
+};
 use crate::tui::grid::draw_thumbnail;
-use crate::tui::keys::keymap::Context;
+use crate::tui::keys::Context;
 use crate::tui::recognise::RecogniseMessage;
 use crate::tui::recognise::trained::{TrainedModel, onto};
-use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, narrow};
+use crate::tui::widget::{Role, Theme};
 
 const CELL: u16 = 7;
 const NAME: usize = 12;

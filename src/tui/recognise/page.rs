@@ -13,13 +13,11 @@ use taxel_files::formats::Name;
 use taxel_files::storage::{ModelChoice, RememberedFile};
 
 use crate::naming::Terms;
-use crate::tui::app::change::{begin_drawn, inform, refuse};
-use crate::tui::app::message::Message;
-use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
-use crate::tui::app::state::App;
+use crate::tui::app::{
+    App, Canvas, Flow, Message, Page, Place, Placed, Wheel, begin_drawn, inform, refuse,
+};
 use crate::tui::jobs::{self, answer};
-use crate::tui::keys::action;
-use crate::tui::keys::keymap::Context;
+use crate::tui::keys::{Context, action};
 use crate::tui::matrix;
 use crate::tui::recognise::RecogniseMessage;
 use crate::tui::recognise::confusion::Confusion;

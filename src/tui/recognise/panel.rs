@@ -24,12 +24,11 @@ use taxel_core::recognition::AnswerState;
 use taxel_files::formats::value::{counted, decimal, percent};
 
 use crate::naming::{nearest_in_words, verdict};
-use crate::tui::app::page::Canvas;
-use crate::tui::keys::action;
-use crate::tui::keys::keymap::Context;
+use crate::tui::app::Canvas;
+use crate::tui::keys::{Context, action};
 use crate::tui::recognise::page::Recognition;
 use crate::tui::recognise::trained::TrainedModel;
-use crate::tui::widget::theme::Role;
+use crate::tui::widget::Role;
 use crate::tui::widget::write::{self, narrow};
 
 const PERCENT: usize = 9;

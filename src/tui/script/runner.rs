@@ -28,14 +28,11 @@ use taxel_files::formats::value::counted;
 use taxel_files::formats::{DescribedImprint, StoredShape};
 use taxel_files::storage::{Library, below_home};
 
-use crate::tui::app::message::{Message, Mouse, MouseKind};
-use crate::tui::app::state::{App, Options};
+use crate::tui::app::{App, Message, Mouse, MouseKind, Options};
 use crate::tui::jobs::Jobs;
-use crate::tui::keys::key::{Key, parse};
-use crate::tui::keys::keymap::Keymap;
+use crate::tui::keys::{Key, Keymap, parse};
 use crate::tui::script::session::Session;
-use crate::tui::widget::theme::{ColorDepth, Palette};
-use crate::tui::widget::write;
+use crate::tui::widget::{ColorDepth, Palette, write};
 
 #[derive(Clone, Debug)]
 #[expect(

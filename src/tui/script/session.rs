@@ -21,18 +21,16 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::{Color, Modifier};
 use taxel_files::formats::value::escaped;
 
-use crate::tui::app::message::Message;
-use crate::tui::app::state::{App, Options};
 use crate::tui::app::unsaved::offer;
 use crate::tui::app::update::update;
 use crate::tui::app::view::draw;
+use crate::tui::app::{App, Message, Options};
 use crate::tui::jobs::Jobs;
-use crate::tui::keys::key::{Key, KeyError, parse};
+use crate::tui::keys::{Key, KeyError, parse};
 use crate::tui::live::message::{LiveMessage, NamedSource, SourceState};
 use crate::tui::live::update::{arrived, last_page};
-use crate::tui::widget::theme::{Palette, Theme, letter};
-use crate::tui::widget::write;
 use crate::tui::widget::write::narrow;
+use crate::tui::widget::{Palette, Theme, letter, write};
 
 #[derive(Debug)]
 pub struct Session {

@@ -13,13 +13,11 @@ use crossterm::clipboard::CopyToClipboard;
 use crossterm::terminal::window_size;
 use signal_hook::consts::{SIGCONT, SIGHUP, SIGTSTP};
 
-use crate::tui::app::change::refuse;
-use crate::tui::app::message::Message;
-use crate::tui::app::state::{App, TerminalEffect};
 use crate::tui::app::unsaved::offer;
 use crate::tui::app::unsaved::{end, flush};
 use crate::tui::app::update::update;
 use crate::tui::app::view::draw;
+use crate::tui::app::{App, Message, TerminalEffect, refuse};
 use crate::tui::jobs::Jobs;
 use crate::tui::keys::action;
 use crate::tui::live::source;

@@ -9,8 +9,8 @@ use crossterm::event::{
 };
 use signal_hook::consts::SIGHUP;
 
-use crate::tui::app::message::{Mouse, MouseKind};
-use crate::tui::keys::key::{Arrow, Key};
+use crate::tui::app::{Mouse, MouseKind};
+use crate::tui::keys::{Arrow, Key};
 use crate::tui::terminal::event_loop::Event;
 
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -6,7 +6,7 @@
 use std::ffi::OsString;
 
 use crate::tui::terminal::screen::Abilities;
-use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
+use crate::tui::widget::{ColorDepth, Palette, Theme};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum TerminalKind {

@@ -8,11 +8,10 @@ use ratatui::layout::{Position, Rect};
 use taxel_core::parameter::{Parameter, ParameterError};
 use taxel_core::sensor::Sensor;
 
-use crate::tui::app::message::Message;
-use crate::tui::keys::key::Arrow;
-use crate::tui::widget::text_field::TextField;
-use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::app::Message;
+use crate::tui::keys::Arrow;
 use crate::tui::widget::write::{self, around, narrow};
+use crate::tui::widget::{Role, TextField, Theme};
 
 pub(crate) struct FormError {
     pub(crate) brief: String,

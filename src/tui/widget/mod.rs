@@ -17,3 +17,9 @@ pub mod theme;
 pub mod plot;
 
 pub mod write;
+
+pub(in crate::tui) use field_list::*;
+pub use plot::*;
+pub use rows::*;
+pub use text_field::TextField;
+pub use theme::*;

@@ -14,8 +14,8 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use taxel_files::formats::axis_marks;
 
-use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, narrow};
+use crate::tui::widget::{Role, Theme};
 
 const APART: u16 = 10;
 const LINES: u16 = 2;

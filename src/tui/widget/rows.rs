@@ -2,8 +2,8 @@
 
 use ratatui::layout::{Position, Rect};
 
-use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::widget::theme::Role;
+use crate::tui::app::{Endpoint, Message};
+use crate::tui::widget::Role;
 use crate::tui::widget::write::first_of;
 
 #[derive(Clone, Copy, Debug)]

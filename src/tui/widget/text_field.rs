@@ -5,8 +5,8 @@
 
 use tui_input::{Input, InputRequest};
 
-use crate::tui::app::message::{Endpoint, Erase, Message};
-use crate::tui::keys::key::Arrow;
+use crate::tui::app::{Endpoint, Erase, Message};
+use crate::tui::keys::Arrow;
 
 #[derive(Clone, Debug)]
 pub struct TextField {

@@ -11,8 +11,7 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::text::Span;
 
-use crate::tui::widget::text_field::TextField;
-use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::{Role, TextField, Theme};
 
 /// Writes pieces of text, each in its role, into the first line of an area. The first piece that does not fit is cut
 /// short with an ellipsis, and the following ones are left out. Returns the column after the text.
