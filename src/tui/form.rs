@@ -1,4 +1,4 @@
-//! The forms of Figure, Picture and the sensor.
+//! The forms of Figure, Picture (also for outlines) and the sensor.
 //!
 //! ```text
 //! Figure                                              title
@@ -17,9 +17,8 @@ use std::collections::BTreeMap;
 
 use ratatui::layout::{Position, Rect};
 use taxel_core::figure::{Figure, FigureKind, NO_ROOM};
-use taxel_core::imprint::Imprint;
 use taxel_core::parameter::{Parameter, ParameterError};
-use taxel_core::picture::{PICTURE_PARAMETERS, Picture};
+use taxel_core::picture::PICTURE_PARAMETERS;
 use taxel_core::quote::quoted_character;
 use taxel_core::sensor::{MatrixSize, SENSOR_PARAMETERS, Sensor};
 use taxel_core::source::Source;
@@ -59,7 +58,7 @@ impl FormMemory {
 
 enum Subject {
     Figure(FigureKind),
-    Picture(String, Box<Imprint>),
+    Picture(String),
     Sensor,
 }
 
@@ -96,10 +95,9 @@ impl FormDialog {
         )
     }
 
-    pub(crate) fn picture(before: &Document, picture: Picture, name: String) -> Self {
-        let subject = Subject::Picture(name, Box::new(*picture.imprint()));
-        let begun = Document::touched(before.sensor, Source::Picture(picture));
-        Self::new(subject, before, begun, FormMemory::default())
+    pub(crate) fn picture(before: &Document, placed: Document, name: String) -> Self {
+        let subject = Subject::Picture(name);
+        Self::new(subject, before, placed, FormMemory::default())
     }
 
     pub(crate) fn sensor(before: &Document) -> Self {
@@ -154,7 +152,7 @@ impl FormDialog {
                 let new = || Source::Figure(self.memory.new_figure(*kind, &self.before.sensor));
                 (kind.parameters(), Some(own.unwrap_or_else(new)))
             }
-            Subject::Picture(..) => (PICTURE_PARAMETERS, source),
+            Subject::Picture(_) => (PICTURE_PARAMETERS, source),
             Subject::Sensor => (SENSOR_PARAMETERS, source),
         };
         let field = |&parameter: &Parameter| {
@@ -180,10 +178,10 @@ impl FormDialog {
             Subject::Figure(kind) => {
                 Document::touched(sensor, Source::Figure(Figure::default_of(*kind, &sensor)))
             }
-            Subject::Picture(name, imprint) => {
-                let picture = Picture::at_home(**imprint).named(name);
-                Document::touched(sensor, Source::Picture(picture))
-            }
+            Subject::Picture(_) => Document {
+                source: self.begun.source.clone().map(Source::at_home),
+                ..self.begun.clone()
+            },
             Subject::Sensor => self.before.on(Sensor::default()),
         };
         self.memory = FormMemory::default();
@@ -206,7 +204,7 @@ impl FormDialog {
         if self.form.error().is_some() {
             return None;
         }
-        let sensor = self.before.sensor;
+        let sensor = self.begun.sensor;
         let value = |parameter: Parameter| {
             let mut fields = self.form.fields.iter();
             let field = fields.find(|own| own.parameter == parameter)?;
@@ -214,8 +212,9 @@ impl FormDialog {
         };
         let source = match &self.subject {
             Subject::Figure(kind) => Source::Figure(Figure::new(*kind, &sensor, value).ok()?),
-            Subject::Picture(name, imprint) => {
-                Source::Picture(Picture::new(**imprint, &sensor, value).ok()?.named(name))
+            Subject::Picture(name) => {
+                let placed = self.begun.source.clone()?.placed(&sensor, value);
+                placed.ok()?.named(name)
             }
             Subject::Sensor => {
                 let mut values = SENSOR_PARAMETERS
@@ -298,7 +297,7 @@ impl Page for FormDialog {
     fn draw(&self, Canvas { theme, buffer, .. }: Canvas<'_>, area: Rect) -> Option<Position> {
         let title = match &self.subject {
             Subject::Figure(_) => "Figure".to_owned(),
-            Subject::Picture(name, _) => format!("Picture: {name}"),
+            Subject::Picture(name) => format!("Picture: {name}"),
             Subject::Sensor => "Sensor".to_owned(),
         };
         write::text(buffer, area, theme, &title, Role::Title);

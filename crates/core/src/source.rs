@@ -102,6 +102,29 @@ impl Source {
         Ok(self)
     }
 
+    /// Returns the same shape with the name under which it is stored; a figure has none.
+    #[must_use]
+    pub fn named(self, name: &str) -> Self {
+        match self {
+            Self::Figure(figure) => Self::Figure(figure),
+            Self::Picture(picture) => Self::Picture(picture.named(name)),
+            Self::Outline(outline) => Self::Outline(outline.named(name)),
+        }
+    }
+
+    /// Returns a picture or an outline in its own place, as a new one is; a figure as it is.
+    #[must_use]
+    pub fn at_home(self) -> Self {
+        match self {
+            Self::Figure(figure) => Self::Figure(figure),
+            Self::Picture(mut picture) => {
+                picture.values = Picture::at_home(*picture.imprint()).values;
+                Self::Picture(picture)
+            }
+            Self::Outline(outline) => Self::Outline(outline.at_home()),
+        }
+    }
+
     /// Returns the same shape on a sensor of this pitch: an outline in mm then has another size in cells.
     ///
     /// # Errors

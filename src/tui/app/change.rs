@@ -152,9 +152,9 @@ pub(in crate::tui) fn is_other(app: &App, document: &Document) -> bool {
     })
 }
 
-/// Replaces the document with one from a form or a command. A figure of another kind, or a picture of another shape,
-/// is a new document, and the name stays with the old one. A notice says how many taxels set by hand were dropped. A
-/// held shape is let go.
+/// Replaces the document with one from a form or a command. A figure of another kind, or a picture or an outline of
+/// another shape, is a new document, and the name stays with the old one. A notice says how many taxels set by hand
+/// were dropped. A held shape is let go.
 pub(in crate::tui) fn replace(app: &mut App, document: Document) {
     app.held = None;
     app.pen = None;
@@ -210,7 +210,7 @@ fn say_dropped(app: &mut App, dropped: u32) {
     inform(app, text);
 }
 
-/// Says that only a figure or a picture can be moved, and how there is one.
+/// Says that only a shape can be moved, and how there is one.
 fn refuse_to_move(app: &mut App) {
     let (figure, picture) = (app.key_of(&action::FIGURE), app.key_of(&action::PICTURE));
     let text = if app.reading().imprint.is_empty() {

@@ -6,10 +6,13 @@
 use taxel_core::description::{Description, Region, main_region, regions};
 use taxel_core::imprint::Imprint;
 use taxel_core::matrix::Matrix;
+use taxel_core::outline::OutlineError;
+use taxel_core::parameter::Parameter;
 use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
 use taxel_core::touch::{Plane, reaches_beyond};
 use taxel_files::formats::{Name, StoredShape};
+use taxel_files::storage::UNNAMED;
 
 /// The content of the matrix. It is plain and small, so that a list of earlier documents is the undo history.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +35,19 @@ impl Document {
         }
     }
 
+    /// Places a stored shape. A sensor whose pitch is not set takes that of an outline in mm; otherwise the outline gets
+    /// the size that it has on the sensor.
+    pub fn placed(mut sensor: Sensor, source: Source) -> Result<Self, OutlineError> {
+        if let Source::Outline(outline) = &source
+            && let Some(pitch) = outline.pitch_mm().filter(|_| sensor.pitch_mm() == 1.0)
+        {
+            sensor = sensor.with(Parameter::Pitch, pitch).unwrap_or(sensor);
+        }
+        let source = source.at_pitch(sensor.pitch_mm())?;
+        source.check_size(&sensor)?;
+        Ok(Self::touched(sensor, source))
+    }
+
     pub fn drawn(sensor: Sensor, imprint: Imprint) -> Self {
         Self {
             sensor,
@@ -46,8 +62,14 @@ impl Document {
     }
 
     pub fn of_shape(shape: &StoredShape) -> Self {
+        let source = match &shape.source {
+            Some(Source::Outline(_)) if shape.name.as_str() != UNNAMED => {
+                Some(shape.touched_again())
+            }
+            source => source.clone(),
+        };
         let mut document = Self {
-            source: shape.source.clone(),
+            source,
             ..Self::empty(shape.sensor)
         };
         let touched = Reading::of(&document).imprint;
@@ -64,19 +86,21 @@ impl Document {
         }
     }
 
-    /// A source whose values this sensor does not allow becomes a drawing.
+    /// A source whose values this sensor does not allow becomes a drawing. An outline in mm follows the pitch.
     #[must_use]
     pub fn on(&self, sensor: Sensor) -> Self {
-        let allowed = |source: &&Source| {
+        let allowed = |source: &Source| {
             source.parameters().iter().all(|&parameter| {
                 let value = source.get(parameter);
                 value.is_none_or(|value| sensor.check(parameter, value).is_ok())
             })
         };
-        match self.source.as_ref().filter(allowed) {
+        let source = self.source.clone();
+        let source = source.and_then(|source| source.at_pitch(sensor.pitch_mm()).ok());
+        match source.filter(allowed) {
             Some(source) => Self {
                 sensor,
-                source: Some(source.clone()),
+                source: Some(source),
                 edits: self.edits.resized(sensor.size()),
             },
             None => Self::drawn(sensor, Reading::of(self).imprint.resized(sensor.size())),

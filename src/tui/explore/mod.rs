@@ -71,7 +71,7 @@ pub enum ExploreMessage {
     /// A click on a place of a tab: a heading, x0 and y0 of a map, an angle.
     Point(u64, u64),
     Angle(i8),
-    /// To the next zoom of a picture.
+    /// To the next zoom of a stored shape.
     Zoom,
     Export,
 }

@@ -70,11 +70,11 @@ pub(crate) fn explored(app: &App) -> Option<Source> {
     }
     // Without a source, the document consists of the edits alone.
     let imprint = document.edits;
-    let picture = (!imprint.is_empty()).then(|| Picture::at_home(imprint))?;
-    Some(Source::Picture(match app.stored_name() {
+    let picture = (!imprint.is_empty()).then(|| Source::from(Picture::at_home(imprint)))?;
+    Some(match app.stored_name() {
         Some(name) => picture.named(name),
         None => picture,
-    }))
+    })
 }
 
 /// Opens the form with the ranges of an earlier sweep, if there is one.

@@ -127,20 +127,21 @@ fn compare_with_before(app: &mut App) {
     }
 }
 
-/// Opens the form of the picture on the matrix, or of the stored shape on the matrix as a picture; without either, the
-/// list to choose one from. The name in the form is the name of the picture, or else of the document. The notice says
+/// Opens the form of the picture or outline on the matrix, or of the stored shape on the matrix as a picture; without either, the
+/// list to choose one from. The name in the form is that of the picture, or else of the document. The notice says
 /// how to get to another shape, because the key for a picture leads here and no longer to the list.
 fn open_picture(app: &mut App) {
     let present = app.history.present();
-    let (picture, name) = match (&present.source, app.loaded_imprint()) {
-        (Some(Source::Picture(picture)), _) => {
-            let name = picture.name().or(app.stored_name());
-            (picture.clone(), name.unwrap_or("imprint"))
+    let (source, name) = match (&present.source, app.loaded_imprint()) {
+        (Some(source @ (Source::Picture(_) | Source::Outline(_))), _) => {
+            let name = source.stored_name().or(app.stored_name());
+            (source.clone(), name.unwrap_or("imprint"))
         }
-        (None, Some((name, imprint))) => (Picture::at_home(*imprint).named(name), name),
+        (None, Some((name, imprint))) => (Picture::at_home(*imprint).into(), name),
         _ => return open_list(app, Purpose::Picture),
     };
-    app.open(FormDialog::picture(present, picture, name.to_owned()));
+    let placed = Document::touched(present.sensor, source.named(name));
+    app.open(FormDialog::picture(present, placed, name.to_owned()));
     let load = app.key_of(&action::LOAD);
     inform(app, format!("{load} loads another shape"));
 }

@@ -4,7 +4,6 @@ use std::io::ErrorKind;
 
 use rustix::fs::{Access, access};
 use rustix::io::Errno;
-use taxel_core::picture::Picture;
 use taxel_files::formats::{Name, StoredShape};
 use taxel_files::storage::{Expected, Library, LibraryError, LoadedShape, ShapeOrigin};
 
@@ -35,8 +34,14 @@ fn load(app: &mut App, purpose: Purpose, name: String) {
         answer(move |app| match (loaded, purpose) {
             (Ok(loaded), Purpose::Picture) => {
                 let name = loaded.shape.name.to_string();
-                let picture = Picture::at_home(loaded.shape.imprint).named(&name);
-                app.open(FormDialog::picture(app.history.present(), picture, name));
+                let before = app.history.present();
+                match Document::placed(before.sensor, loaded.shape.touched_again()) {
+                    Ok(placed) => app.open(FormDialog::picture(before, placed, name)),
+                    Err(error) => {
+                        let change = app.key_of(&action::SENSOR);
+                        refuse(app, format!("{name}: {error}; {change} changes the sensor"));
+                    }
+                }
             }
             (Ok(loaded), Purpose::Compare) => {
                 compare_with(app, loaded.shape.name.as_str(), &loaded.shape.imprint);

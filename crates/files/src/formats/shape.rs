@@ -76,20 +76,16 @@ impl StoredShape {
 
     /// The shape as it is touched again: its outline as it was placed, otherwise the picture of its imprint.
     pub fn touched_again(&self) -> Source {
-        let name = self.name.as_str();
-        match &self.source {
-            Some(Source::Outline(outline)) => outline.clone().named(name).into(),
-            _ => Picture::at_home(self.imprint).named(name).into(),
-        }
+        let source = match &self.source {
+            Some(source @ Source::Outline(_)) => source.clone(),
+            _ => Picture::at_home(self.imprint).into(),
+        };
+        source.named(self.name.as_str())
     }
 
     /// The shape as one of a set, where neither its place, its angle nor its zoom counts.
     pub fn of_set(&self) -> NamedShape {
-        let source = match self.touched_again() {
-            Source::Outline(outline) => outline.at_home().into(),
-            other => other,
-        };
-        NamedShape::new(self.name.to_string(), source)
+        NamedShape::new(self.name.to_string(), self.touched_again().at_home())
     }
 
     /// Returns the same shape under another name.
