@@ -156,9 +156,11 @@ impl Pen<f64> for Dots<'_> {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let length = libm::hypot(dx, dy);
         if length > 0.0 {
-            let aside = (-dy / length * INSIDE, dx / length * INSIDE);
-            let moved = |place: DotPosition| (place.0 + aside.0, place.1 + aside.1);
-            self.canvas.line(moved(from), moved(to));
+            let (x, y) = (dx / length * INSIDE, dy / length * INSIDE);
+            // Also from the corners, which would leave a dot beside the material.
+            let from = (from.0 - y + x, from.1 + x + y);
+            let to = (to.0 - y - x, to.1 + x - y);
+            self.canvas.line(from, to);
         }
     }
 
