@@ -66,21 +66,17 @@ fn answers(model: &Model) {
     unknown.toggle(5, 3);
     assert!(!model.counts_of(&known).is_empty() && model.counts_of(&unknown).is_empty());
     let touches = [known];
-    let posterior = Work::new(|| {
-        black_box(model.posterior(black_box(&known)));
-    });
     let answer = Work::new(|| {
         black_box(model.recognise(Evidence::of(black_box(&touches))));
     });
     let nearest = Work::new(|| {
-        black_box(model.nearest(black_box(&unknown)));
+        black_box(model.nearest(black_box(&unknown), None));
     });
     let pose = Work::new(|| {
         black_box(model.pose_of(0, black_box(&known), &ToTheEnd));
     });
-    let answers = in_turn(100, [posterior, answer, nearest, pose]);
-    let [posterior, answer, nearest, pose] = answers.map(|least| least.processor * 1e6);
-    println!("posterior: {posterior:.2} µs");
+    let answers = in_turn(100, [answer, nearest, pose]);
+    let [answer, nearest, pose] = answers.map(|least| least.processor * 1e6);
     println!("whole answer: {answer:.1} µs");
     println!("nearest imprints of an unknown one: {nearest:.0} µs");
     println!("pose: {pose:.0} µs");

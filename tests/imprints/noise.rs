@@ -247,7 +247,7 @@ fn without_noise_dead_taxels_do_not_make_an_impossible_touch_certain() {
         .recognise(Evidence::of(&touches).under(Some(&noise)))
         .nearest;
     assert_eq!(nearest.map(|near| near.distance), Some(1));
-    let distance = model.nearest(&torn).map(|near| near.distance);
+    let distance = model.nearest(&torn, None).map(|near| near.distance);
     assert_eq!(distance, Some(1), "where it is not known");
 }
 

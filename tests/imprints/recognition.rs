@@ -435,7 +435,7 @@ fn the_nearest_imprint_of_an_unknown_one_is_found() {
     shifted.toggle(10, 7);
     let answer = model.recognise(exactly(std::slice::from_ref(&shifted)));
     assert_eq!(answer.state, AnswerState::Unknown);
-    let nearest = model.nearest(&shifted).expect("keys fit");
+    let nearest = model.nearest(&shifted, None).expect("keys fit");
     assert_eq!(nearest.distance, 1);
     assert_eq!(
         nearest
@@ -448,7 +448,7 @@ fn the_nearest_imprint_of_an_unknown_one_is_found() {
 
     // A comparison with every key at every shift, one by one.
     for touch in [touch, shifted] {
-        let nearest = model.nearest(&touch).expect("keys fit");
+        let nearest = model.nearest(&touch, None).expect("keys fit");
         let mut least = u32::MAX;
         for key in 0..model.keys().len() {
             let imprint = model.keys().imprint(key).expect("none is empty");
@@ -468,7 +468,7 @@ fn the_nearest_imprint_of_an_unknown_one_is_found() {
         assert_eq!(nearest.distance, least);
         assert_eq!(nearest.imprint.differing(&touch).count(), least);
     }
-    assert!(model.nearest(&Imprint::empty(size(2, 2))).is_none());
+    assert!(model.nearest(&Imprint::empty(size(2, 2)), None).is_none());
 }
 
 #[test]

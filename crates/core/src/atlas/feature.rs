@@ -25,11 +25,6 @@ pub struct Feature {
 }
 
 impl Feature {
-    /// Returns key and name for display, such as "na: active taxels".
-    pub fn label(&self) -> String {
-        format!("{}: {}", self.key, self.descriptor.name)
-    }
-
     /// Returns the symbol of its descriptor on the screen; None if the descriptor has other parts, too.
     pub(in crate::atlas) fn symbol(&self) -> Option<&'static str> {
         (self.key == self.descriptor.key).then_some(self.descriptor.symbol)

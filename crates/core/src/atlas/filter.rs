@@ -140,11 +140,6 @@ impl std::str::FromStr for AtlasFilter {
 }
 
 impl AtlasFilter {
-    /// Returns true if there are no conditions, so that every imprint is kept.
-    pub fn is_empty(&self) -> bool {
-        self.conditions.is_empty()
-    }
-
     /// Returns for each imprint of an atlas, in their order, whether it fulfils all conditions.
     pub fn keeps(&self, atlas: &Atlas) -> Vec<bool> {
         let counts: Vec<u64> = atlas.counts().collect();
@@ -398,7 +393,6 @@ mod tests {
         };
         assert_eq!(count(""), atlas.len());
         assert_eq!(count(" \t "), atlas.len());
-        assert!(filter("  ").is_empty() && !filter("na=1").is_empty());
         assert_eq!(count("id=3"), 1);
         assert_eq!(count("ID < 3  id>=1"), 2);
         assert_eq!(count("pieces=0"), 1, "the empty imprint");

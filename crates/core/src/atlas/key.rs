@@ -20,8 +20,6 @@ use crate::sensor::MatrixSize;
 /// let here: Imprint = "....\n.##.\n..#.".parse().unwrap();
 /// let there: Imprint = "##\n.#".parse().unwrap();
 /// assert_eq!(ImprintKey::of(&here), ImprintKey::of(&there));
-/// assert_eq!(ImprintKey::of(&here).imprint(), Some(there));
-/// assert_eq!(ImprintKey::of(&here.without(&here)).imprint(), None);
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ImprintKey {
@@ -82,11 +80,6 @@ impl ImprintKey {
         let mut key = Self::default();
         key.pack(width, height, first.into_iter());
         key
-    }
-
-    /// Returns the imprint, on a matrix of exactly its size; None for the empty key.
-    pub fn imprint(&self) -> Option<Imprint> {
-        self.borrowed().imprint()
     }
 
     pub(crate) fn borrowed(&self) -> KeyRef<'_> {
@@ -254,7 +247,7 @@ mod tests {
             }
             let key = ImprintKey::of(&imprint);
             assert_eq!(
-                key.imprint(),
+                key.borrowed().imprint(),
                 Some(imprint.resized(MatrixSize::of(side, side)))
             );
             assert_eq!((key.width, key.height), (side, side));
@@ -263,7 +256,7 @@ mod tests {
                 (table.intern(key.borrowed()), table.find(&key)),
                 (index, Some(index))
             );
-            assert_eq!(table.imprint(index), key.imprint());
+            assert_eq!(table.imprint(index), key.borrowed().imprint());
         }
         assert_eq!(table.len(), 7);
         let (sorted, order) = table.sorted();

@@ -36,15 +36,6 @@ fn coordinates<S: Serializer>(point: &DVec2, serializer: S) -> Result<S::Ok, S::
 }
 
 impl Value {
-    /// Returns the number, if the value is a count or a single number.
-    pub fn number(self) -> Option<f64> {
-        match self {
-            Self::Count(count) => Some(count.into()),
-            Self::Number(number) => Some(number),
-            _ => None,
-        }
-    }
-
     /// Calls `take` with each number of the value, in the order of [`Descriptor::parts`].
     pub(crate) fn each(self, mut take: impl FnMut(f64)) {
         match self {
@@ -386,10 +377,6 @@ mod tests {
 
     #[test]
     fn a_descriptor_tells_its_parts_its_place_and_its_value_of_nothing() {
-        assert_eq!(
-            (Value::Count(3).number(), Value::None.number()),
-            (Some(3.0), None)
-        );
         let parts = |key| Descriptor::from_key(key).expect("in the table").parts;
         assert_eq!(parts("cg"), ["_x", "_y"]);
         assert_eq!(parts("cg_cd_direction"), [""]);

@@ -64,11 +64,6 @@ impl TareFrames {
         self.wanted - self.own.frames
     }
 
-    /// Returns how many of the last frames were left out, but are in the tare if it begins again with more of them.
-    pub fn others(&self) -> u64 {
-        self.other.frames
-    }
-
     /// Checks that the needed number of frames fits into memory if each has this number of values.
     ///
     /// # Errors
@@ -81,13 +76,6 @@ impl TareFrames {
         Err(FrameError::Invalid(format!(
             "too many frames for a tare: expected at most {most} of this size"
         )))
-    }
-
-    /// Returns why a frame is not in the tare, as far as it is made; None if it fits.
-    pub fn refusal(&self, frame: &Frame, view: &View) -> Option<FrameError> {
-        let mut visible = Matrix::default();
-        let seen = view.apply_to(frame, &mut visible);
-        seen.and_then(|()| self.own.check(visible.size())).err()
     }
 
     /// Adds the part of a frame that a view shows; does nothing if there are enough. Returns false if the tare begins

@@ -179,7 +179,7 @@ impl Model {
             _ => self.posterior_of_touches(noise, touches),
         };
         if !may_flip {
-            let nearest_to = |touch| self.nearest_without(touch, noise.dead());
+            let nearest_to = |touch| self.nearest(touch, noise.dead());
             nearest = first_unknown(touches.iter(), nearest_to);
         }
         let likeliest = posterior.ranking.iter().take(posterior.likeliest);

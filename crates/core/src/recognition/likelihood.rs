@@ -128,14 +128,6 @@ impl Model {
         sums
     }
 
-    /// Returns the number of pairs of a key and a place on a matrix of this size.
-    pub fn pairs(&self, size: MatrixSize) -> u64 {
-        let boxes = self.index().boxes().iter();
-        let pairs =
-            boxes.map(|own| own.keys.len() as u64 * shift_count((own.width, own.height), size));
-        pairs.sum()
-    }
-
     /// Returns how many touches of each shape lie at the distances from an imprint that matter under a noise. None if
     /// no key fits the matrix, or, without noise, if no shape leaves the imprint.
     pub fn distances(&self, imprint: &Imprint, noise: &Noise) -> Option<Distances> {
@@ -163,7 +155,7 @@ impl Model {
             }
         }
         let observed = Observed::new(imprint, noise.dead());
-        let nearest = self.nearest_without(imprint, noise.dead())?;
+        let nearest = self.nearest(imprint, noise.dead())?;
         let least = nearest.distance;
         if noise.flip() == 0.0 && least > 0 {
             return None;
@@ -406,7 +398,7 @@ mod tests {
         let noise = Noise::new(0.03).expect("in range");
         let with = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            let found = || (model.distances(&touch, &noise), model.nearest(&touch));
+            let found = || (model.distances(&touch, &noise), model.nearest(&touch, None));
             pool.expect("threads").install(found)
         };
         let one = with(1);
@@ -466,7 +458,7 @@ mod tests {
         let touch: Imprint = "#.".parse().expect("an imprint");
         let bounds = |touches: &[u64]| {
             let distances = Distances {
-                nearest: model.nearest(&touch).expect("it fits"),
+                nearest: model.nearest(&touch, None).expect("it fits"),
                 touches: vec![touches.to_vec()],
                 method: SearchMethod::Scan,
             };
@@ -494,7 +486,7 @@ mod tests {
         let model = Training::new(shapes, sensor, Anchor::Centre, ranges)?.run()?;
         // A square with a taxel missing and one too many: no shape leaves it, but a square nearly does.
         let touch = "......#.\n.####...\n.####...\n.###....\n.####...\n........".parse()?;
-        assert_eq!(model.posterior(&touch), None);
+        assert!(model.counts_of(&touch).is_empty());
         let posterior = model
             .posterior_under(&touch, &Noise::new(0.01)?)
             .expect("keys fit");

@@ -3,7 +3,7 @@
 //! A sweep finds *every* imprint of a shape and how often it occurs, so the best classifier of one touch is not
 //! learned but counted. The place of a touch is unknown, so only the [`ImprintKey`] of an imprint counts: the active
 //! taxels, cropped to their bounding box. A [`Model`] holds, for each key, in how many poses each shape leaves it,
-//! `n[s, k]`. These integers give the [`posterior`](Model::posterior) of a touch and, exactly, the [`Evaluation`]:
+//! `n[s, k]`. These integers give the posterior of a touch and, exactly, the [`Evaluation`]:
 //! which touches the best classifier names right, which are certain, and how much a touch tells in bits. No
 //! classifier of one touch makes fewer errors on these poses.
 //!

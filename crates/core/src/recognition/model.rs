@@ -6,7 +6,6 @@ use std::sync::OnceLock;
 
 use crate::atlas::{ImprintKey, KeyRef, KeyTable};
 use crate::imprint::Imprint;
-use crate::parameter::number::share;
 use crate::pose::{Anchor, Axis, MAX_POSES, Ranges};
 use crate::quote::shortened;
 use crate::recognition::fit::StartPoses;
@@ -365,34 +364,11 @@ impl Model {
         end.map_or(&[], |&end| &self.counts[self.starts[key]..end])
     }
 
-    /// Iterates over the keys in their order. Each item is the imprint of a key (None for touches that activate no
-    /// taxel) and the shapes that leave it.
-    pub fn entries(
-        &self,
-    ) -> impl DoubleEndedIterator<Item = (Option<Imprint>, &[ShapeCount])> + ExactSizeIterator {
-        (0..self.keys.len()).map(|key| (self.keys.imprint(key), self.counts(key)))
-    }
-
     /// Returns the shapes that leave the key of an imprint; empty if no shape does.
     pub fn counts_of(&self, imprint: &Imprint) -> &[ShapeCount] {
         self.keys
             .find(&ImprintKey::of(imprint))
             .map_or(&[], |key| self.counts(key))
-    }
-
-    /// Returns P(shape | imprint) for each shape of the set; None for an imprint that no shape leaves. The place of the
-    /// imprint on its matrix does not matter. Of a shard, only its own poses count.
-    pub fn posterior(&self, imprint: &Imprint) -> Option<Vec<f64>> {
-        let counts = self.counts_of(imprint);
-        if counts.is_empty() {
-            return None;
-        }
-        let mut posterior = vec![0.0; self.head.shapes.len()];
-        let total: u128 = counts.iter().map(|&count| self.weighted(count)).sum();
-        for &count in counts {
-            posterior[usize::from(count.shape)] = share(self.weighted(count), total);
-        }
-        Some(posterior)
     }
 
     pub(super) fn index(&self) -> &KeyIndex {
@@ -619,11 +595,9 @@ mod tests {
         let bar = NamedShape::new("bar", Figure::rectangle(4.0, 2.0).on(&sensor)?);
         let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
         let model = Training::new([bar], sensor, Anchor::Centre, ranges)?.run()?;
-        let most = model
-            .entries()
-            .max_by_key(|(_, counts)| counts[0].poses)
-            .expect("a key");
-        assert_eq!(most.0, Some("####\n####".parse()?));
+        let most = (0..model.keys().len()).max_by_key(|&key| model.most_frequent(key).1);
+        let most = most.and_then(|key| model.keys().imprint(key));
+        assert_eq!(most, Some("####\n####".parse()?));
         Ok(())
     }
 }

@@ -575,19 +575,11 @@ pub struct Nearest {
 
 impl Model {
     /// Returns the imprint of this model that differs least from an observed one, over all keys and all their shifts on
-    /// the observed matrix; among equals, the one that a single shape leaves in the most poses, then the first. None if
+    /// the observed matrix, without the taxels of `dead`; among equals, the one that a single shape leaves in the most poses, then the first. None if
     /// no key fits the matrix.
     ///
     /// The first call sorts the keys for scans and takes longer.
-    pub fn nearest(&self, observed: &Imprint) -> Option<Nearest> {
-        self.nearest_without(observed, None)
-    }
-
-    pub(super) fn nearest_without(
-        &self,
-        observed: &Imprint,
-        dead: Option<&Imprint>,
-    ) -> Option<Nearest> {
+    pub fn nearest(&self, observed: &Imprint, dead: Option<&Imprint>) -> Option<Nearest> {
         // With dead taxels, the key of the imprint alone is not enough: a dead taxel may be a hole in it.
         if dead.is_none()
             && let Some(known) = self.nearest_known(observed)

@@ -207,22 +207,6 @@ impl Separation {
         })
     }
 
-    /// Returns the limit for every value of a range, in the order of [`SizeAxis::smallest_first`].
-    ///
-    /// # Errors
-    /// Returns the errors of [`Self::at`].
-    pub fn scan(
-        &self,
-        axis: SizeAxis,
-        values: &DecimalRange,
-        threshold: f64,
-        progress: &dyn Progress,
-    ) -> Result<Vec<SeparationPoint>, TrainingError> {
-        let values = axis.smallest_first(values).into_iter();
-        let points = values.map(|value| self.at(axis, value, threshold, progress));
-        points.collect()
-    }
-
     /// Returns the smallest size with at most this error. Takes the first such size of the scan, then tries nine values
     /// between it and the size before. None if every size of the scan has a larger error.
     ///
@@ -305,6 +289,15 @@ mod tests {
         separation
     }
 
+    fn scan(separation: &Separation, scales: &str) -> Vec<SeparationPoint> {
+        let scales: DecimalRange = scales.parse().expect("a range");
+        let at = |scale| separation.at(SizeAxis::Scale, scale, 0.5, &ToTheEnd);
+        scales
+            .values()
+            .map(|scale| at(scale).expect("it fits"))
+            .collect()
+    }
+
     /// Shapes that are enlarged by hand and trained like any other set give the same touches and keys.
     #[test]
     fn a_point_is_a_training_of_larger_shapes() {
@@ -384,17 +377,8 @@ mod tests {
             ),
         ];
         let separation = coarse(shapes);
-        let errors: Vec<f64> = separation
-            .scan(
-                SizeAxis::Scale,
-                &"1:3:1".parse().expect("a range"),
-                0.5,
-                &ToTheEnd,
-            )
-            .expect("they fit")
-            .iter()
-            .map(SeparationPoint::error)
-            .collect();
+        let points = scan(&separation, "1:3:1");
+        let errors: Vec<f64> = points.iter().map(SeparationPoint::error).collect();
         assert!(errors[0] > errors[2] && errors[2] < 0.01, "{errors:?}");
         // Half the pitch is twice the scale.
         let pitch = separation.at(SizeAxis::Pitch, 0.5, 0.5, &ToTheEnd);
@@ -410,12 +394,7 @@ mod tests {
     #[test]
     fn the_smallest_size_is_the_first_of_those_tried() {
         let separation = coarse(equal_figures());
-        let scan = |range: &str| {
-            let range: DecimalRange = range.parse().expect("a range");
-            let points = separation.scan(SizeAxis::Scale, &range, 0.5, &ToTheEnd);
-            points.expect("they fit")
-        };
-        let points = scan("0.5:1.7:0.2");
+        let points = scan(&separation, "0.5:1.7:0.2");
         assert!(points[0].error() > 0.5 && points[6].error() < 0.1);
         let wanted = 0.2;
         let found = separation.smallest(SizeAxis::Scale, &points, wanted, &ToTheEnd);
@@ -423,7 +402,7 @@ mod tests {
         assert_eq!(found.step, 0.02);
         assert!(found.point.error() <= wanted);
         // Trying every size gives the same result.
-        let fine = scan("0.5:1.7:0.02");
+        let fine = scan(&separation, "0.5:1.7:0.02");
         let first = fine.iter().find(|point| {
             let coarse = points.iter().find(|other| other.error() <= wanted);
             point.error() <= wanted && coarse.is_some_and(|it| it.value - point.value < 0.2)

@@ -37,7 +37,7 @@ pub const LEAST_SIDE: u8 = 16;
 /// assert_eq!(model.poses(), 24 * 100 * 100);
 ///
 /// let touch: Imprint = "####\n####\n####\n####".parse()?;
-/// assert_eq!(model.posterior(&touch), Some(vec![1.0, 0.0]));
+/// assert_eq!(model.counts_of(&touch)[0].shape, 0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone)]

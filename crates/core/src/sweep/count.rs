@@ -38,11 +38,6 @@ impl CountedImprints {
         let imprint = self.layout.imprint(self.counter.key(index));
         (imprint, self.counter.tallies()[index].count)
     }
-
-    /// Iterates over all imprints, each with the number of poses in which it occurs.
-    pub fn iter(&self) -> impl DoubleEndedIterator<Item = (Imprint, u64)> + ExactSizeIterator {
-        (0..self.len()).map(|index| self.get(index))
-    }
 }
 
 /// A run of neighbouring poses of one row that leave the same imprint.
@@ -143,7 +138,7 @@ mod tests {
             let grid = PoseGrid::new(source, sensor, Anchor::Corner, ranges).expect("in range");
             let counted = Sweep::new(&grid).count().expect("not stopped");
             let mut poses = 0;
-            for (imprint, count) in counted.iter() {
+            for (imprint, count) in (0..counted.len()).map(|index| counted.get(index)) {
                 let same = |other: &Imprint| *other == imprint;
                 let runs = Sweep::new(&grid).poses_where(&same).expect("not stopped");
                 let found: u64 = runs.iter().map(|run| run.poses * run.orientations).sum();

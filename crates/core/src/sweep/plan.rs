@@ -297,7 +297,7 @@ impl IndexReflection {
     /// mapped onto each other.
     fn of(range: &DecimalRange, extent: f64) -> Option<Self> {
         // The shortest decimal that reads back as the number is the one that was given.
-        let [extent, _] = DecimalRange::try_from(extent).ok()?.exact();
+        let [extent, _] = extent.to_string().parse::<DecimalRange>().ok()?.exact();
         let [start, step] = range.exact();
         let whole = i128::from(range.count()) * step;
         // Two centres that are images of each other sum up to a whole number of cells.
