@@ -38,7 +38,6 @@ pub enum FigureKind {
 
 /// All that tells the kinds apart; forms, files, flags and checks follow from it.
 struct Kind {
-    name: &'static str,
     /// The sizes, then position, angle and thickness.
     parameters: &'static [Parameter],
     /// 0 for an ellipse.
@@ -48,44 +47,30 @@ struct Kind {
 /// The kinds in the order of [`FigureKind`].
 const KINDS: [Kind; 7] = {
     use Parameter::{Angle, Length, RadiusX, RadiusY, Side, Thickness, Width, X0, Y0};
-    const fn regular(name: &'static str, corners: u8) -> Kind {
+    const fn regular(corners: u8) -> Kind {
         Kind {
-            name,
             parameters: &[Side, X0, Y0, Angle, Thickness],
             corners,
         }
     }
     [
         Kind {
-            name: "ellipse",
             parameters: &[RadiusX, RadiusY, X0, Y0, Angle, Thickness],
             corners: 0,
         },
         Kind {
-            name: "rectangle",
             parameters: &[Length, Width, X0, Y0, Angle, Thickness],
             corners: 4,
         },
-        regular("triangle", 3),
-        regular("pentagon", 5),
-        regular("hexagon", 6),
-        regular("heptagon", 7),
-        regular("octagon", 8),
+        regular(3),
+        regular(5),
+        regular(6),
+        regular(7),
+        regular(8),
     ]
 };
 
 impl FigureKind {
-    /// All seven kinds, in the paper's order.
-    pub const ALL: &'static [Self] = &[
-        Self::Ellipse,
-        Self::Rectangle,
-        Self::Triangle,
-        Self::Pentagon,
-        Self::Hexagon,
-        Self::Heptagon,
-        Self::Octagon,
-    ];
-
     fn row(self) -> &'static Kind {
         &KINDS[self as usize]
     }
@@ -93,11 +78,6 @@ impl FigureKind {
     /// Returns the names of all kinds, in the same order.
     pub fn names() -> Vec<&'static str> {
         Self::ALL.iter().map(|kind| kind.name()).collect()
-    }
-
-    /// Returns the name of the kind, as in files, in flags and on the screen.
-    pub fn name(self) -> &'static str {
-        self.row().name
     }
 
     /// Returns a hint for a word that means a figure but is not its name: "circle" or "square".
@@ -122,7 +102,19 @@ impl FigureKind {
     }
 }
 
-named!(FigureKind, "figure", FigureKind::ALL);
+named!(
+    FigureKind,
+    "figure",
+    [
+        Ellipse "ellipse",
+        Rectangle "rectangle",
+        Triangle "triangle",
+        Pentagon "pentagon",
+        Hexagon "hexagon",
+        Heptagon "heptagon",
+        Octagon "octagon",
+    ]
+);
 
 /// A figure on the sensory plane. Its values are always finite, and its sizes and its thickness are above 0.
 ///

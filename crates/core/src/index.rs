@@ -20,12 +20,8 @@ pub fn index(number: u64) -> usize {
 }
 
 /// Converts a signed coordinate to an index. Coordinates before the first column or row become 0.
-pub(crate) const fn from_first(coordinate: i32) -> usize {
-    (if coordinate > 0 {
-        coordinate.unsigned_abs()
-    } else {
-        0
-    }) as usize
+pub(crate) fn from_first(coordinate: i32) -> usize {
+    wide(coordinate.max(0).unsigned_abs())
 }
 
 /// Converts a count or an index to four bytes. Tables of such numbers have fewer than 2³² entries; `u32::MAX` means

@@ -71,7 +71,7 @@ pub(crate) struct Sweep {
     #[command(flatten)]
     ranges: RangeFlags,
     /// Point that x0 and y0 place: corner (default) or centre
-    #[arg(long, value_name = "POINT", value_parser = one_of::<Anchor, _>(Anchor::NAMES))]
+    #[arg(long, value_name = "POINT", value_parser = one_of::<Anchor, _>(Anchor::ALL.iter().map(|own| own.name())))]
     #[arg(hide_possible_values = true, help_heading = "Grid")]
     anchor: Option<Anchor>,
     #[command(flatten)]

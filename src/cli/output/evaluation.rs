@@ -55,9 +55,9 @@ pub(crate) fn record(
         record.push(("classifier", json!(reached.classifier.name())));
         record.push(("features", json!(reached.features)));
         record.push(("dropped", json!(reached.dropped)));
-        if let Some(sample) = reached.sample {
-            record.push(("sample", json!(sample.per_shape)));
-            record.push(("seed", json!(sample.seed)));
+        if let Some((poses, seed)) = reached.sample {
+            record.push(("sample", json!(poses)));
+            record.push(("seed", json!(seed)));
         }
     }
     Record(record)

@@ -61,7 +61,7 @@ enum Colon {
     Explore {
         #[command(flatten)]
         ranges: RangeFlags,
-        #[arg(long, value_parser = one_of::<Anchor, _>(Anchor::NAMES))]
+        #[arg(long, value_parser = one_of::<Anchor, _>(Anchor::ALL.iter().map(|own| own.name())))]
         anchor: Option<Anchor>,
     },
     /// place one of the seven figures

@@ -126,7 +126,7 @@ fn default_ranges_cut_no_shipped_shape_off_that_fits() {
     let mut whole = 0;
     for side in [16, 20, 24] {
         for (name, source) in shipped() {
-            for anchor in Anchor::ALL {
+            for &anchor in Anchor::ALL {
                 let given = GivenRanges::default();
                 let ranges = default_ranges(&source, &sensor(side), anchor, &given);
                 let ranges = ranges.expect("in range");
@@ -223,7 +223,7 @@ fn the_smallest_sensor_holds_all_shapes_and_no_smaller_one_does() {
     let triangle = Source::from(Figure::triangle(20.0).on(&large).expect("in range"));
     let disc = Source::from(Figure::ellipse(9.5, 9.5).on(&large).expect("in range"));
     let set = [&triangle, &disc];
-    for anchor in Anchor::ALL {
+    for &anchor in Anchor::ALL {
         for angles in ["0", "30", "0:359:1"] {
             let given = GivenRanges::default().with(Axis::Angle, Some(range(angles)));
             let (fit, ranges) = smallest_sensor(&set, anchor, &given).expect("64 are enough");

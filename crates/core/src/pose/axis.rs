@@ -141,20 +141,7 @@ pub enum Anchor {
     Centre,
 }
 
-impl Anchor {
-    /// Both anchors.
-    pub const ALL: [Self; 2] = [Self::Corner, Self::Centre];
-
-    /// The names of the anchors, in the order of [`Self::ALL`].
-    pub const NAMES: [&'static str; 2] = ["corner", "centre"];
-
-    /// Returns the name in files and on the command line; [`str::parse`] reads it.
-    pub const fn name(self) -> &'static str {
-        Self::NAMES[self as usize]
-    }
-}
-
-named!(Anchor, "anchor", &Anchor::ALL);
+named!(Anchor, "anchor", [Corner "corner", Centre "centre"]);
 
 #[cfg(test)]
 mod tests {

@@ -86,8 +86,9 @@ pub struct ClassifierEvaluation {
     pub features: Vec<String>,
     /// The features that were left out, with the reason.
     pub dropped: Vec<(String, &'static str)>,
-    /// The poses that [`Classifier::Knn`] drew at random; None for the other classifiers.
-    pub sample: Option<PoseSample>,
+    /// How many poses of each shape [`Classifier::Knn`] drew at random, and the seed; None if it took all, and for the
+    /// other classifiers.
+    pub sample: Option<(usize, u64)>,
 }
 
 impl Classifier {
@@ -102,10 +103,8 @@ impl Classifier {
         settings: &ClassifierSettings,
         progress: &dyn Progress,
     ) -> Option<ClassifierEvaluation> {
-        let sample = PoseSample {
-            per_shape: settings.sample,
-            seed: settings.seed,
-        };
+        let is_drawn = self == Self::Knn && (settings.sample as u64) < model.poses();
+        let sample = is_drawn.then_some((settings.sample, settings.seed));
         let table = match self {
             Self::Template => FeatureTable::default(),
             Self::Z | Self::Knn => FeatureTable::new(model, settings.descriptors.as_deref()),
@@ -137,7 +136,7 @@ impl Classifier {
             evaluation: evaluation?,
             features: table.names,
             dropped: table.dropped,
-            sample: (self == Self::Knn && sample.is_drawn(model)).then_some(sample),
+            sample,
         })
     }
 }
@@ -335,32 +334,16 @@ fn moments(model: &Model, column: &[f64]) -> (f64, f64) {
     (mean, mean_of(&|value| (value - mean) * (value - mean)))
 }
 
-/// Poses that a classifier drew at random.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct PoseSample {
-    /// The number of poses of each shape.
-    pub per_shape: usize,
-    /// The seed for drawing these poses.
-    pub seed: u64,
-}
-
-impl PoseSample {
-    /// Returns true if poses are drawn, because these are fewer than each shape has.
-    fn is_drawn(self, model: &Model) -> bool {
-        (self.per_shape as u64) < model.poses()
-    }
-}
-
 /// Touches of one shape that leave the same key: the key, the shape and the number of touches, each of which is a vote.
 type Voters = (usize, usize, u64);
 
 /// The touches that vote, in the order of their keys: a random sample, or all touches.
-fn voters(model: &Model, sample: PoseSample) -> Vec<Voters> {
+fn voters(model: &Model, sample: Option<(usize, u64)>) -> Vec<Voters> {
     let mut votes = BTreeMap::new();
-    if sample.is_drawn(model) {
-        let mut random = Pcg64::seed_from_u64(sample.seed);
+    if let Some((sample, seed)) = sample {
+        let mut random = Pcg64::seed_from_u64(seed);
         for (shape, draw) in Draw::all(model, |_| 1).iter().enumerate() {
-            for key in (0..sample.per_shape).filter_map(|_| draw.key(&mut random)) {
+            for key in (0..sample).filter_map(|_| draw.key(&mut random)) {
                 *votes.entry((key, shape)).or_insert(0) += 1;
             }
         }
@@ -564,7 +547,7 @@ mod tests {
         let all = reached(usize::MAX, 0);
         assert_eq!((&all, all.sample), (&reached(usize::MAX, 1), None));
         let some = reached(5, 0);
-        assert_eq!(some.sample.map(|sample| sample.per_shape), Some(5));
+        assert_eq!(some.sample, Some((5, 0)));
         assert_ne!(some.evaluation, all.evaluation);
     }
 

@@ -53,17 +53,6 @@ pub struct Evaluation {
     weights: u128,
 }
 
-/// Two shapes of which one is taken for the other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PairConfusion {
-    /// The number of one shape in the set.
-    pub one: usize,
-    /// The number of the other shape, which comes later in the set.
-    pub other: usize,
-    /// The touches of each that are named as the other, added up.
-    pub touches: u128,
-}
-
 /// The touches and the keys of which the best classifier knows that no other shape can leave them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Certainty {
@@ -177,8 +166,9 @@ impl Evaluation {
         (named > 0).then(|| share(self.confusion.get(shape, shape), named))
     }
 
-    /// Returns the pairs of shapes that are confused, those with the most touches first.
-    pub fn worst_pairs(&self) -> Vec<PairConfusion> {
+    /// Returns the pairs of shapes of which one is taken for the other, with the touches of both together, the most
+    /// confused first.
+    pub fn worst_pairs(&self) -> Vec<((usize, usize), u128)> {
         let mut sums = BTreeMap::new();
         for (touched, named, touches) in self.confusion.cells() {
             if touched != named {
@@ -186,15 +176,8 @@ impl Evaluation {
                 *sums.entry(pair).or_insert(0) += touches;
             }
         }
-        let pairs = sums.into_iter();
-        let mut pairs: Vec<_> = pairs
-            .map(|((one, other), touches)| PairConfusion {
-                one,
-                other,
-                touches,
-            })
-            .collect();
-        pairs.sort_by_key(|pair| (std::cmp::Reverse(pair.touches), pair.one, pair.other));
+        let mut pairs: Vec<_> = sums.into_iter().collect();
+        pairs.sort_by_key(|&(pair, touches)| (std::cmp::Reverse(touches), pair));
         pairs
     }
 }
@@ -356,7 +339,7 @@ mod tests {
         assert_eq!((limit.touches, limit.right), (SHAPES.into(), 1));
         assert_eq!(limit.worst_pairs().len(), usize::from(SHAPES) - 1);
         let worst = limit.worst_pairs()[0];
-        assert_eq!((worst.one, worst.other, worst.touches), (0, 1, 1));
+        assert_eq!(worst, ((0, 1), 1));
         assert_eq!((limit.recall(0), limit.recall(1)), (Some(1.0), Some(0.0)));
         assert_eq!(
             (limit.recall(1_000_000), limit.precision(1_000_000)),

@@ -188,14 +188,8 @@ struct Search<'a> {
     imprint: &'a Imprint,
     dead: Option<&'a Imprint>,
     plane: Plane,
-    best: Option<Fitted>,
-}
-
-/// A shape in a pose, and how many taxels differ there.
-#[derive(Clone)]
-struct Fitted {
-    differs: u32,
-    source: Source,
+    /// The shape in the pose in which the fewest taxels differ, and how many do.
+    best: Option<(u32, Source)>,
 }
 
 impl Search<'_> {
@@ -203,15 +197,14 @@ impl Search<'_> {
     fn misfit(&mut self, source: &Source) -> f64 {
         self.plane.touched(source);
         let (differs, misfit) = self.plane.misfit(self.imprint, self.dead);
-        if self.best.as_ref().is_none_or(|best| differs < best.differs) {
-            let source = source.clone();
-            self.best = Some(Fitted { differs, source });
+        if self.best.as_ref().is_none_or(|(least, _)| differs < *least) {
+            self.best = Some((differs, source.clone()));
         }
         misfit
     }
 
     fn is_done(&self) -> bool {
-        self.best.as_ref().is_some_and(|best| best.differs == 0)
+        matches!(self.best, Some((0, _)))
     }
 
     /// Moves and turns the shape as long as its misfit gets less.
@@ -249,10 +242,9 @@ impl Search<'_> {
 
     /// Rounds the best pose to hundredths of a cell and tenths of a degree if as few taxels differ there.
     fn rounded(&mut self) {
-        let Some(best) = self.best.clone() else {
+        let Some((least, mut source)) = self.best.clone() else {
             return;
         };
-        let mut source = best.source;
         for (parameter, decimals) in [
             (Parameter::X0, 2),
             (Parameter::Y0, 2),
@@ -266,8 +258,8 @@ impl Search<'_> {
         }
         self.plane.touched(&source);
         let (differs, _) = self.plane.misfit(self.imprint, self.dead);
-        if differs <= best.differs {
-            self.best = Some(Fitted { differs, source });
+        if differs <= least {
+            self.best = Some((differs, source));
         }
     }
 }
@@ -313,7 +305,7 @@ impl Model {
             search.descend(start, &starts.steps);
         }
         search.rounded();
-        let Fitted { differs, source } = search.best?;
+        let (differs, source) = search.best?;
         let imprint = search.plane.touch(&source);
         Some(Fit {
             shape,

@@ -13,7 +13,7 @@ use crate::progress::Progress;
 use crate::quote::{did_you_mean, shortened};
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::model::{Model, ShapeCount, add_count, first_of_most};
-use crate::recognition::simulation::{Judgement, NoisyTouches, RecognitionRate};
+use crate::recognition::simulation::{NoisyTouches, RecognitionRate};
 
 /// A descriptor that says something about the shape, because it does not change when the imprint is moved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -172,10 +172,7 @@ impl GivenDescriptors {
         let judge = |touch: &Imprint, _: &Imprint| {
             let description = ImprintSummary::of(touch).description;
             let named = names.get(&self.values(description.as_ref())).copied();
-            Judgement {
-                is_held: named.is_some(),
-                named,
-            }
+            (named.is_some(), named)
         };
         model.simulated(touches, progress, &judge)
     }
@@ -197,13 +194,6 @@ impl std::str::FromStr for GivenDescriptors {
             descriptors,
             roundings: Vec::new(),
         })
-    }
-}
-
-impl std::fmt::Display for GivenDescriptors {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let keys: Vec<_> = self.descriptors.iter().map(|one| one.key()).collect();
-        f.write_str(&keys.join(","))
     }
 }
 

@@ -39,8 +39,8 @@ mod trial;
 
 pub use crate::atlas::{ImprintKey, KeyTable};
 pub use answer::{Answer, AnswerState, Evidence};
-pub use classifiers::{Classifier, ClassifierEvaluation, ClassifierSettings, PoseSample};
-pub use evaluation::{Certainty, ConfusionMatrix, Evaluation, PairConfusion};
+pub use classifiers::{Classifier, ClassifierEvaluation, ClassifierSettings};
+pub use evaluation::{Certainty, ConfusionMatrix, Evaluation};
 pub use fit::Fit;
 pub use given::{ChosenDescriptor, GivenDescriptors, GivenError, Rounding, ShapeDescriptor};
 pub use likelihood::{Distances, Noise, NoiseError, SearchMethod};

@@ -299,17 +299,10 @@ impl Model {
             if !model.head.same_poses(&head) {
                 return Err(other_poses());
             }
-            let first = u16::try_from(head.cut.len()).unwrap_or(u16::MAX);
-            for index in 0..model.keys.len() {
-                for count in model.counts(index) {
-                    let shape = first.saturating_add(count.shape);
-                    gathered.add(model.keys.get(index), ShapeCount::new(shape, count.poses));
-                }
-            }
+            gathered.add_all(model, u16::try_from(head.cut.len()).unwrap_or(u16::MAX));
             head.cut.extend_from_slice(&model.head.cut);
         }
-        let counts = |index: usize| gathered.counts[index].iter().copied();
-        Self::of_table(head, &gathered.keys, counts)
+        gathered.finish(head)
     }
 
     /// Returns everything except the keys.
@@ -463,8 +456,8 @@ pub(super) fn first_of_most<T: PartialOrd>(
 /// Keys with their counts, while they are gathered.
 #[derive(Debug, Default)]
 pub(super) struct Gathered {
-    pub(super) keys: KeyTable,
-    pub(super) counts: Vec<Vec<ShapeCount>>,
+    keys: KeyTable,
+    counts: Vec<Vec<ShapeCount>>,
 }
 
 impl Gathered {
@@ -475,6 +468,20 @@ impl Gathered {
             self.counts.push(Vec::new());
         }
         add_count(&mut self.counts[slot], more);
+    }
+
+    /// Adds all counts of a model, whose first shape has this number.
+    fn add_all(&mut self, model: &Model, first: u16) {
+        for index in 0..model.keys.len() {
+            for count in model.counts(index) {
+                let shape = first.saturating_add(count.shape);
+                self.add(model.keys.get(index), ShapeCount::new(shape, count.poses));
+            }
+        }
+    }
+
+    pub(super) fn finish(self, head: ModelHead) -> Result<Model, ModelError> {
+        Model::of_table(head, &self.keys, |index| self.counts[index].iter().copied())
     }
 }
 
@@ -520,11 +527,7 @@ impl ModelMerge {
                 }
             }
         }
-        for index in 0..model.keys().len() {
-            for &count in model.counts(index) {
-                self.gathered.add(model.keys().get(index), count);
-            }
-        }
+        self.gathered.add_all(model, 0);
         Ok(())
     }
 
@@ -536,8 +539,7 @@ impl ModelMerge {
         let mut head = self.head.ok_or(ShardOrderError::Nothing)?;
         head.shard.check_last()?;
         head.shard = Shard::WHOLE;
-        let Gathered { keys, counts } = self.gathered;
-        Model::of_table(head, &keys, |index| counts[index].iter().copied())
+        self.gathered.finish(head)
     }
 }
 

@@ -8,7 +8,9 @@ use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, 
 use crate::progress::Progress;
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::model::{NamedShape, check_shapes};
-use crate::recognition::training::{GridSteps, Training, TrainingError, angles_only, fit};
+use crate::recognition::training::{
+    GridSteps, LEAST_SIDE, Training, TrainingError, angles_only, fit,
+};
 use crate::sensor::Sensor;
 use crate::source::Source;
 
@@ -136,7 +138,7 @@ impl Separation {
             zooms.push(given);
         }
         let sources: Vec<&Source> = scaled.iter().map(|shape| &shape.source).collect();
-        let (sensor, ranges) = fit(&reach, &sources, self.steps)?;
+        let (sensor, ranges) = fit(&reach, &sources, self.steps, LEAST_SIDE)?;
         let grid = |(shape, zooms): (&NamedShape, &GivenRanges)| {
             let sensor = sensor.with(Parameter::Threshold, threshold);
             let sensor = sensor.map_err(|error| TrainingError::grid(&shape.name, error))?;

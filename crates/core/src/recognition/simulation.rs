@@ -26,10 +26,6 @@ use crate::sensor::MatrixSize;
 pub struct RecognitionRate {
     /// Touches that were drawn.
     pub touches: u64,
-    /// Touches that were named right.
-    pub right: u64,
-    /// Touches whose imprint some shape also leaves without noise.
-    pub held: u64,
     /// The number of touches, each counted with the weight of its shape.
     pub weighted_touches: u128,
     /// The number of touches that were named right, each counted with the weight of its shape.
@@ -52,8 +48,6 @@ impl RecognitionRate {
         for (weight, own) in shapes {
             let weighted = |count: u64| u128::from(*weight) * u128::from(count);
             rate.touches += own.touches;
-            rate.right += own.right;
-            rate.held += own.held;
             rate.weighted_touches += weighted(own.touches);
             rate.weighted_right += weighted(own.right);
             held += weighted(own.held);
@@ -73,10 +67,7 @@ impl RecognitionRate {
 
 /// The result of a touch: whether the model holds its imprint, and the name that it got (the shape and its
 /// probability), if any.
-pub(super) struct Judgement {
-    pub(super) is_held: bool,
-    pub(super) named: Option<(usize, f64)>,
-}
+pub(super) type Judgement = (bool, Option<(usize, f64)>);
 
 #[derive(Clone, Copy, Default)]
 struct ShapeRate {
@@ -88,12 +79,11 @@ struct ShapeRate {
 }
 
 impl ShapeRate {
-    fn count(&mut self, shape: usize, judged: &Judgement) {
-        let is_right = judged.named.is_some_and(|(named, _)| named == shape);
+    fn count(&mut self, shape: usize, (is_held, named): Judgement) {
         self.touches += 1;
-        self.right += u64::from(is_right);
-        self.held += u64::from(judged.is_held);
-        self.confidence += judged.named.map_or(0.0, |(_, probability)| probability);
+        self.right += u64::from(named.is_some_and(|(named, _)| named == shape));
+        self.held += u64::from(is_held);
+        self.confidence += named.map_or(0.0, |(_, probability)| probability);
     }
 
     fn add(&mut self, more: Self) {
@@ -182,15 +172,10 @@ impl Model {
         progress: &dyn Progress,
     ) -> Option<RecognitionRate> {
         let judge = |touch: &Imprint, dead: &Imprint| {
-            let known = assumed
-                .dead()
-                .map(|known| known.resized(dead.size()).union(dead));
-            let known = known.unwrap_or(*dead);
+            let known = assumed.dead().map_or(*dead, |known| dead.union(known));
             let posterior = self.posterior_under(touch, &assumed.with_dead(known));
-            Judgement {
-                is_held: self.keys().find(&ImprintKey::of(touch)).is_some(),
-                named: posterior.and_then(|own| first_of_most(own.into_iter().enumerate())),
-            }
+            let named = posterior.and_then(|own| first_of_most(own.into_iter().enumerate()));
+            (self.keys().find(&ImprintKey::of(touch)).is_some(), named)
         };
         self.simulated(touches, progress, &judge)
     }
@@ -230,7 +215,7 @@ impl Model {
                 };
                 let dead = random_taxels(size, touches.random_dead, &mut random_of_dead);
                 let touch = self.touch_of(key, touches, &mut random).without(&dead);
-                rate.count(index(number % shapes), &judge(&touch, &dead));
+                rate.count(index(number % shapes), judge(&touch, &dead));
                 if progress.add(1).is_break() {
                     stopped.store(true, Ordering::Relaxed);
                 }
@@ -463,7 +448,7 @@ mod tests {
         let rate = model.recognition_rate(&touches, &noise, &ToTheEnd);
         let rate = rate.expect("not stopped");
         // The long one is always named, so only the confidence is left to chance.
-        assert_eq!((rate.touches, rate.right), (4000, 2000));
+        assert_eq!(rate.touches, 4000);
         let weighted = (rate.weighted_touches, rate.weighted_right);
         assert_eq!(weighted, (20_000, 18_000));
         assert_eq!((rate.accuracy, rate.standard_error), (0.9, 0.0));
@@ -625,7 +610,7 @@ mod tests {
         let noise = Noise::new(0.0).expect("in range");
         let touches = NoisyTouches::new(sensor.size(), noise, 10, 0);
         let rate = model.recognition_rate(&touches, &noise, &ToTheEnd);
-        assert_eq!(rate.map(|rate| (rate.touches, rate.right)), Some((20, 10)));
+        assert_eq!(rate.map(|rate| rate.touches), Some(20));
         // One is always named right, the other never: the accuracy is ½ for every seed.
         let error = rate.map(|rate| (rate.accuracy, rate.standard_error));
         assert_eq!(error, Some((0.5, 0.0)));

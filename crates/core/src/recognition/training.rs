@@ -124,11 +124,7 @@ impl<'a> Training<'a> {
     ) -> Result<Self, TrainingError> {
         let shapes: Vec<NamedShape> = shapes.into_iter().collect();
         check_shapes(&shapes)?;
-        let grid = |shape: &NamedShape| {
-            let grid = PoseGrid::new(shape.source.clone(), sensor, anchor, ranges);
-            grid.map_err(|error| TrainingError::grid(&shape.name, error))
-        };
-        let grids = shapes.iter().map(grid).collect::<Result<_, _>>()?;
+        let grids = grids(&shapes, sensor, anchor, ranges)?;
         Ok(Self::of_grids(shapes, grids))
     }
 
@@ -217,9 +213,22 @@ impl<'a> Training<'a> {
             }
             head.cut.push(counted.partly_off);
         }
-        let counts = |index: usize| gathered.counts[index].iter().copied();
-        Ok(Model::of_table(head, &gathered.keys, counts)?)
+        Ok(gathered.finish(head)?)
     }
+}
+
+/// Returns the same grid for each shape.
+pub(super) fn grids(
+    shapes: &[NamedShape],
+    sensor: Sensor,
+    anchor: Anchor,
+    ranges: Ranges,
+) -> Result<Vec<PoseGrid>, TrainingError> {
+    let grid = |shape: &NamedShape| {
+        let grid = PoseGrid::new(shape.source.clone(), sensor, anchor, ranges);
+        grid.map_err(|error| TrainingError::grid(&shape.name, error))
+    };
+    shapes.iter().map(grid).collect()
 }
 
 fn keys_of(counted: &CountedImprints) -> (KeyTable, Vec<u64>) {
@@ -353,12 +362,22 @@ impl Training<'_> {
         shapes: impl IntoIterator<Item = NamedShape>,
         steps: GridSteps,
     ) -> Result<Self, TrainingError> {
-        let shapes: Vec<NamedShape> = shapes.into_iter().collect();
+        Self::on_a_sensor_like(&Sensor::default(), shapes.into_iter().collect(), steps)
+    }
+
+    /// Creates the same training on a sensor that is at least as large as another one and has its threshold.
+    pub(super) fn on_a_sensor_like(
+        like: &Sensor,
+        shapes: Vec<NamedShape>,
+        steps: GridSteps,
+    ) -> Result<Self, TrainingError> {
+        let of_set = |error| TrainingError::grid("the set", error);
         let sources: Vec<&Source> = shapes.iter().map(|shape| &shape.source).collect();
         let given = angles_only(steps.angles);
-        let reach = Reach::of_all(sources.iter().copied(), Anchor::Centre, &given)
-            .map_err(|error| TrainingError::grid("the set", error))?;
-        let (sensor, ranges) = fit(&reach, &sources, steps)?;
+        let reach = Reach::of_all(sources.iter().copied(), Anchor::Centre, &given);
+        let (sensor, ranges) = fit(&reach.map_err(of_set)?, &sources, steps, like.side())?;
+        let sensor = sensor.with_threshold(like.threshold());
+        let sensor = sensor.map_err(|error| of_set(error.into()))?;
         Self::new(shapes, sensor, Anchor::Centre, ranges)
     }
 }
@@ -369,14 +388,15 @@ pub(super) fn angles_only(angles: DecimalRange) -> GivenRanges {
     given
 }
 
-/// Returns the smallest square sensor, at least 16 × 16, that cuts nothing off, and one cell of positions around its
-/// middle.
+/// Returns the smallest square sensor, of at least `least` columns, that cuts nothing off, and one cell of positions
+/// around its middle.
 pub(super) fn fit(
     reach: &Reach,
     sources: &[&Source],
     steps: GridSteps,
+    least: u8,
 ) -> Result<(Sensor, Ranges), TrainingError> {
-    let sides = SensorSides::at_least(LEAST_SIDE);
+    let sides = SensorSides::at_least(least);
     let angles = angles_only(steps.angles);
     let found = reach.smallest_sensor(sources, &angles, sides, steps.positions.step());
     found.ok_or(TrainingError::Large)

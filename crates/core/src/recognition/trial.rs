@@ -10,14 +10,13 @@ use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
 use crate::imprint::Imprint;
-use crate::pose::{Anchor, Axis, Pose, PoseGrid, Reach, SensorSides};
+use crate::pose::{Axis, Pose, PoseGrid};
 use crate::progress::Progress;
 use crate::recognition::answer::Answer;
 use crate::recognition::evaluation::ConfusionMatrix;
 use crate::recognition::model::{Model, NamedShape};
 use crate::recognition::simulation::{generator, unit};
-use crate::recognition::training::{Training, TrainingError, angles_only};
-use crate::source::Source;
+use crate::recognition::training::{GridSteps, Training, TrainingError, grids};
 use crate::touch::Plane;
 
 /// The answers of a model to touches of known shapes.
@@ -53,10 +52,10 @@ impl Tally {
         }
     }
 
-    fn add(&mut self, row: usize, counted: Counted) {
-        let column = counted.named.unwrap_or(self.column_of_unknown());
+    fn add(&mut self, row: usize, (named, differs): Counted) {
+        let column = named.unwrap_or(self.column_of_unknown());
         self.confusion.add(row, column, 1);
-        if let Some(differs) = counted.differs {
+        if let Some(differs) = differs {
             *self.differs.entry(differs).or_default() += 1;
         }
     }
@@ -76,8 +75,7 @@ impl Tally {
 
     /// Returns the number of touches.
     pub fn touches(&self) -> u128 {
-        let rows = 0..self.labels.len();
-        rows.map(|row| self.confusion.touches_of(row)).sum()
+        self.confusion.cells().map(|(_, _, touches)| touches).sum()
     }
 
     /// Returns the number of touches with the right answer.
@@ -111,20 +109,11 @@ impl Tally {
     }
 }
 
-/// What of an answer is counted.
-#[derive(Clone, Copy)]
-struct Counted {
-    named: Option<usize>,
-    differs: Option<u32>,
-}
+/// What of an answer is counted: the shape, and how many taxels differ from the fit.
+type Counted = (Option<usize>, Option<u32>);
 
-impl Counted {
-    fn of(answer: &Answer) -> Self {
-        Self {
-            named: answer.shape,
-            differs: answer.fit.as_ref().map(|fit| fit.differs),
-        }
-    }
+fn counted(answer: &Answer) -> Counted {
+    (answer.shape, answer.fit.as_ref().map(|fit| fit.differs))
 }
 
 impl Trial {
@@ -142,13 +131,13 @@ impl Trial {
     pub fn add(&mut self, label: &str, is_same: impl Fn(&str) -> bool, answer: &Answer) {
         let row_in = |tally: &Tally| tally.labels.iter().position(|name| is_same(name));
         if let Some(row) = row_in(&self.known) {
-            return self.known.add(row, Counted::of(answer));
+            return self.known.add(row, counted(answer));
         }
         let row = row_in(&self.foreign).unwrap_or_else(|| {
             self.foreign.labels.push(label.to_owned());
             self.foreign.labels.len() - 1
         });
-        self.foreign.add(row, Counted::of(answer));
+        self.foreign.add(row, counted(answer));
     }
 }
 
@@ -198,16 +187,15 @@ impl RandomTouches {
         per_shape: u64,
         seed: u64,
     ) -> Result<Self, TrainingError> {
-        let grid = |shape: &NamedShape| {
-            let (sensor, anchor, ranges) = (*model.sensor(), model.anchor(), *model.ranges());
-            let grid = PoseGrid::new(shape.source.clone(), sensor, anchor, ranges);
-            grid.map_err(|error| TrainingError::grid(&shape.name, error))
-        };
-        let known = model.shapes().iter().map(grid).collect::<Result<_, _>>()?;
+        let (shapes, sensor) = (model.shapes(), *model.sensor());
         let foreign = Some(foreign).filter(|foreign| !foreign.is_empty());
-        let foreign = foreign.map(|foreign| placed_around_the_middle(model, foreign));
+        let steps = GridSteps {
+            angles: model.ranges()[Axis::Angle],
+            ..GridSteps::FINE
+        };
+        let foreign = foreign.map(|own| Training::on_a_sensor_like(&sensor, own, steps));
         Ok(Self {
-            known,
+            known: grids(shapes, sensor, model.anchor(), *model.ranges())?,
             foreign: foreign.transpose()?,
             per_shape,
             seed,
@@ -235,13 +223,13 @@ impl RandomTouches {
         let mut add = |tally: &mut Tally, grids: &[PoseGrid]| {
             for (row, grid) in grids.iter().enumerate() {
                 let touches = (first..first + self.per_shape).into_par_iter();
-                let counted = touches.map(|number| {
+                let answers = touches.map(|number| {
                     // Each touch has its own generator, so that none waits for another.
                     let touch = random_touch(grid, &mut generator(self.seed, number));
-                    let counted = Counted::of(&answer(&touch));
+                    let counted = counted(&answer(&touch));
                     progress.add(1).is_continue().then_some(counted)
                 });
-                for counted in counted.collect::<Option<Vec<_>>>()? {
+                for counted in answers.collect::<Option<Vec<_>>>()? {
                     tally.add(row, counted);
                 }
                 first += self.per_shape;
@@ -256,23 +244,6 @@ impl RandomTouches {
         }
         Some(trial)
     }
-}
-
-/// Places shapes that a model does not have on a sensor like the model's.
-fn placed_around_the_middle(
-    model: &Model,
-    shapes: Vec<NamedShape>,
-) -> Result<Training<'static>, TrainingError> {
-    let angles = angles_only(model.ranges()[Axis::Angle]);
-    let sources: Vec<&Source> = shapes.iter().map(|shape| &shape.source).collect();
-    let reach = Reach::of_all(sources.iter().copied(), Anchor::Centre, &angles);
-    let reach = reach.map_err(|error| TrainingError::grid("the foreign shapes", error))?;
-    let sides = SensorSides::at_least(model.sensor().side());
-    let placed = reach.smallest_sensor(&sources, &angles, sides, 1);
-    let (sensor, ranges) = placed.ok_or(TrainingError::Large)?;
-    let sensor = sensor.with_threshold(model.sensor().threshold());
-    let sensor = sensor.map_err(|error| TrainingError::grid("the foreign shapes", error))?;
-    Training::new(shapes, sensor, Anchor::Centre, ranges)
 }
 
 /// Touches with a shape in a random pose, which may lie between those of the grid.
@@ -293,8 +264,9 @@ mod tests {
 
     use super::*;
     use crate::figure::Figure;
+    use crate::pose::Anchor;
     use crate::progress::{ToTheEnd, stop_if};
-    use crate::recognition::{Evidence, GridSteps, equal_figures};
+    use crate::recognition::{Evidence, equal_figures};
     use crate::sensor::Sensor;
 
     /// The model of six of the seven figures of 30 cells.

@@ -97,7 +97,7 @@ impl ArchiveHeader {
     pub(crate) fn grid(&self) -> Result<Grid, ReadError> {
         let sensor = self.sensor.sensor(Sensor::default()).map_err(in_header)?;
         let anchor = self.anchor.parse().map_err(|_| {
-            let (found, known) = (shortened(&self.anchor), Anchor::NAMES.join(" or "));
+            let (found, known) = (shortened(&self.anchor), "corner or centre");
             in_header(format!("anchor {found:?} is unknown, expected {known}"))
         })?;
         let mut ranges = Ranges::default();

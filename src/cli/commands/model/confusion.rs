@@ -417,8 +417,9 @@ impl Table for Matrix<'_> {
         let mut text = summary(own, named) + "\n" + &table(&rows, &[0]);
         let pairs = own.worst_pairs();
         let pairs = pairs.iter().take(3).map(|pair| {
-            let [one, other] = [pair.one, pair.other].map(|shape| &own.labels[shape]);
-            let part = percent(share(pair.touches, own.touches));
+            let &((one, other), touches) = pair;
+            let [one, other] = [one, other].map(|shape| &own.labels[shape]);
+            let part = percent(share(touches, own.touches));
             format!("{one} and {other} ({part})")
         });
         let pairs: Vec<String> = pairs.collect();
@@ -470,8 +471,8 @@ fn features(reached: &ClassifierEvaluation) -> String {
 
 fn sampled<'a>(reached: impl IntoIterator<Item = &'a ClassifierEvaluation>) -> String {
     let drawn = reached.into_iter().filter_map(|own| {
-        let (name, sample) = (own.classifier.name(), own.sample?);
-        let (poses, seed) = (grouped(sample.per_shape as u64), sample.seed);
+        let (name, (poses, seed)) = (own.classifier.name(), own.sample?);
+        let poses = grouped(poses as u64);
         Some(format!(
             "{name} draws {poses} poses of each shape, with seed {seed}\n"
         ))

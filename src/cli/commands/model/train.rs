@@ -63,7 +63,7 @@ pub(crate) struct Train {
     #[arg(long, value_name = "N", value_parser = positions, help_heading = "Grid")]
     positions: Option<CellPositions>,
     /// Point that x0 and y0 place: corner or centre; default corner with --x0 or --y0, else centre
-    #[arg(long, value_name = "POINT", value_parser = one_of::<Anchor, _>(Anchor::NAMES))]
+    #[arg(long, value_name = "POINT", value_parser = one_of::<Anchor, _>(Anchor::ALL.iter().map(|own| own.name())))]
     #[arg(hide_possible_values = true, help_heading = "Grid")]
     anchor: Option<Anchor>,
     #[command(flatten)]
