@@ -1,9 +1,11 @@
 //! What an evaluation of a model says, in words and as a line of JSON. All numbers are counted touches, not estimates.
 
+use std::iter;
+
 use serde_json::{Value, json};
 use taxel_core::parameter::number::share;
 use taxel_core::recognition::{ClassifierEvaluation, Evaluation};
-use taxel_files::formats::value::{counted, grouped, percent};
+use taxel_files::formats::value::{counted, csv_line, grouped, percent};
 
 use crate::cli::output::table::{Record, row, table};
 
@@ -19,6 +21,32 @@ pub(crate) fn cell(touches: u128, is_right: bool) -> String {
         (0, false) => "· ".to_owned(),
         (touches, false) => format!("{touches} "),
     }
+}
+
+/// Lines of CSV: a true shape, and its touches by the name that they are given.
+pub(crate) fn matrix_csv(
+    labels: &[String],
+    names: &[String],
+    counts: impl IntoIterator<Item = Vec<u128>>,
+) -> String {
+    let line = |name: &str, cells: Vec<String>| csv_line(iter::once(name.to_owned()).chain(cells));
+    let mut lines = line("true", names.to_vec());
+    for (label, counts) in labels.iter().zip(counts) {
+        lines += &line(label, counts.iter().map(u128::to_string).collect());
+    }
+    lines
+}
+
+/// A line for each count, with its share of all touches and a note.
+pub(crate) fn shares<'a>(
+    touches: u128,
+    counts: impl IntoIterator<Item = (&'a str, u128, &'a str)>,
+) -> String {
+    let rows = counts.into_iter().map(|(name, count, note)| {
+        let part = percent(share(count, touches));
+        row([name, &grouped(count), &part, note])
+    });
+    table(&rows.collect::<Vec<_>>(), &[0, 3])
 }
 
 /// An evaluation in JSON. In `confusion`, a row is a true shape, a column the name that it is given.
@@ -103,11 +131,7 @@ pub(crate) fn summary(own: &Evaluation, named: NamedBy) -> String {
         Some(("tied", own.tied, "the first of the tied shapes is named")),
         Some(("in top two", own.right_in_top_two, "")),
     ];
-    let rows = counts.into_iter().flatten().map(|(name, count, note)| {
-        let part = percent(share(count, own.touches));
-        row([name, &grouped(count), &part, note])
-    });
-    text += &table(&rows.collect::<Vec<_>>(), &[0, 3]);
+    text += &shares(own.touches, counts.into_iter().flatten());
     let (bits, of) = (own.information_bits, own.prior_bits);
     text + &format!("information  {bits:.4} of {of:.4} bits\n")
 }

@@ -64,8 +64,7 @@ impl Tally {
         self.confusion.names() - 1
     }
 
-    /// Returns the column of the right answers of a row.
-    pub fn right_column(&self, row: usize) -> usize {
+    fn right_column(&self, row: usize) -> usize {
         if self.is_foreign {
             self.column_of_unknown()
         } else {

@@ -18,7 +18,7 @@ use taxel_core::recognition::{
     NamedShape, RandomTouches, Rounding,
 };
 use taxel_files::formats::name::folded;
-use taxel_files::formats::value::{counted, csv_line, grouped, percent, percentage};
+use taxel_files::formats::value::{counted, grouped, percent, percentage};
 use taxel_files::formats::{ConfusionMap, json};
 use taxel_files::storage::FoundModel;
 
@@ -31,7 +31,7 @@ use crate::cli::commands::model::{
 };
 use crate::cli::failure::{Failure, Named};
 use crate::cli::input::shapes;
-use crate::cli::output::evaluation::{self, NamedBy, cell, count, summary};
+use crate::cli::output::evaluation::{self, NamedBy, cell, count, matrix_csv, summary};
 use crate::cli::output::table::{Record, row, table};
 use crate::cli::settings::Pitch;
 use crate::naming::Terms;
@@ -159,7 +159,7 @@ impl Confusion {
         self.check()?;
         let found = find(&self.model, &cx.shelf)?;
         let foreign = self.foreign_shapes(&found, cx)?;
-        self.check_model(&found, foreign.len())?;
+        self.check_model(&found)?;
         let model = ready(found, self.table.quiet)?;
         if let Some(each) = self.test {
             self.tested(&model, foreign, each, cx)
@@ -193,7 +193,8 @@ impl Confusion {
     fn check(&self) -> Result<(), Failure> {
         let name = self.classifier.as_deref().unwrap_or_default();
         let is = |one: &str| name == one || name == ALL;
-        let drawn = self.test.is_some() || self.noise.noise.is_some() || is("knn");
+        let (no_knn, no_template) = (!is("knn"), !is("template"));
+        let none_drawn = self.test.is_none() && self.noise.noise.is_none() && no_knn;
         let with = format!("with --classifier {name}");
         let without = "without --test, --noise or --classifier knn, which draw touches";
         let given = self.given.as_ref();
@@ -201,19 +202,11 @@ impl Confusion {
             |own: &Rounding| given.is_none_or(|all| all.descriptors.contains(&own.descriptor));
         let unknown = !self.round.iter().all(known);
         let unused = [
-            (
-                "neighbours",
-                self.neighbours.is_some() && !is("knn"),
-                &*with,
-            ),
-            ("sample", self.sample.is_some() && !is("knn"), &with),
-            (
-                "templates",
-                self.templates.is_some() && !is("template"),
-                &with,
-            ),
+            ("neighbours", self.neighbours.is_some() && no_knn, &*with),
+            ("sample", self.sample.is_some() && no_knn, &with),
+            ("templates", self.templates.is_some() && no_template, &with),
             ("given", given.is_some() && name == "template", &with),
-            ("seed", self.seed.is_some() && !drawn, without),
+            ("seed", self.seed.is_some() && none_drawn, without),
             ("round", unknown, "for what --given does not name"),
         ];
         if self.test.is_some() && self.noise.noise.is_some_and(|noise| noise.count() > 1) {
@@ -228,30 +221,27 @@ impl Confusion {
 
     /// Refuses what the shapes and the sensor of a model do not allow, and a file that cannot be written: before the
     /// work, not after it.
-    fn check_model(&self, found: &FoundModel, foreign: usize) -> Result<(), Failure> {
-        let shapes = names(found.shapes());
-        let is_table = self.classifier.as_deref() == Some(ALL);
-        let is_matrix =
-            self.test.is_some() || !(is_table || self.greedy || self.noise.noise.is_some());
-        if self.pairs || is_matrix {
-            let table = if self.pairs {
-                "--pairs"
-            } else {
-                "confusion matrix"
-            };
-            fits_in_table(table, shapes.len())?;
+    fn check_model(&self, found: &FoundModel) -> Result<(), Failure> {
+        let shapes = found.shapes().len();
+        let of_all = self.classifier.as_deref() == Some(ALL);
+        let is_curve = self.noise.noise.is_some() && self.test.is_none();
+        if self.pairs {
+            fits_in_table("--pairs", shapes)?;
+        } else if !of_all && !self.greedy && !is_curve {
+            fits_in_table("confusion matrix", shapes)?;
         }
         self.noise.check(&found.sensor())?;
-        let most = "shapes, and a drawing shows at most 64; .csv takes all";
-        let fits = !is_matrix || shapes.len() + foreign <= MOST_DRAWN;
-        let refused = if is_table {
-            "expected a name that ends in .csv, for the table of all classifiers".to_owned()
+        let not_drawn = if of_all {
+            Some("expected a name that ends in .csv, for the table of all classifiers".to_owned())
+        } else if self.test.is_some() {
+            Some("expected a name that ends in .csv, for answers to random touches".to_owned())
         } else {
-            format!("{} {most}", shapes.len() + foreign)
+            let most = "shapes, and a drawing shows at most 64; .csv takes all";
+            (!is_curve && shapes > MOST_DRAWN).then(|| format!("{shapes} {most}"))
         };
-        match self.table.drawing().filter(|_| is_table || !fits) {
-            Some(path) => Err(Failure::new(refused)).named(path.display()),
-            None => self.table.check(),
+        match (self.table.drawing(), not_drawn) {
+            (Some(path), Some(reason)) => Err(Failure::new(reason)).named(path.display()),
+            _ => self.table.check(),
         }
     }
 
@@ -367,7 +357,7 @@ impl Confusion {
         if self.table.json {
             return json::ascii(&json!({"labels": labels, "errors": errors})) + "\n";
         }
-        let rows = square(&labels, |row, column| {
+        let rows = square(&labels, labels.len(), |row, column| {
             if row == column {
                 "–".to_owned()
             } else {
@@ -382,14 +372,18 @@ fn names(shapes: &[NamedShape]) -> Vec<String> {
     shapes.iter().map(|shape| shape.name.clone()).collect()
 }
 
-/// The rows of a table with a row and a column for each shape; columns are numbered.
-fn square(labels: &[String], cell: impl Fn(usize, usize) -> String) -> Vec<Vec<String>> {
+/// The rows of a table with a row for each label and a column for each of the first ones; both are numbered.
+pub(super) fn square(
+    labels: &[String],
+    columns: usize,
+    cell: impl Fn(usize, usize) -> String,
+) -> Vec<Vec<String>> {
     let digits = labels.len().to_string().len();
-    let numbers = (1..=labels.len()).map(|number| format!("{number} "));
+    let numbers = (1..=columns).map(|number| format!("{number} "));
     let mut rows = vec![iter::once(String::new()).chain(numbers).collect()];
     for (row, label) in labels.iter().enumerate() {
         let name = format!("{:>digits$} {label}", row + 1);
-        let cells = (0..labels.len()).map(|column| cell(row, column));
+        let cells = (0..columns).map(|column| cell(row, column));
         rows.push(iter::once(name).chain(cells).collect());
     }
     rows
@@ -401,7 +395,7 @@ impl Table for Matrix<'_> {
     /// The matrix has the diagonal in brackets, zero as a dot, recall on the right, precision below.
     fn text(&self) -> String {
         let &Self(own, named, classifier) = self;
-        let mut rows = square(&own.labels, |row, column| {
+        let mut rows = square(&own.labels, own.labels.len(), |row, column| {
             cell(own.confusion.get(row, column), row == column)
         });
         rows[0].push("recall".to_owned());
@@ -430,14 +424,8 @@ impl Table for Matrix<'_> {
     }
 
     fn csv(&self) -> String {
-        let line = |name: &str, cells: &[String]| {
-            csv_line(iter::once(name).chain(cells.iter().map(String::as_str)))
-        };
-        let mut table = line("true", &self.0.labels);
-        for (name, row) in self.0.labels.iter().zip(self.0.confusion.rows()) {
-            table += &line(name, &row.iter().map(u128::to_string).collect::<Vec<_>>());
-        }
-        table
+        let labels = &self.0.labels;
+        matrix_csv(labels, labels, self.0.confusion.rows())
     }
 
     fn json(&self) -> String {
@@ -445,8 +433,7 @@ impl Table for Matrix<'_> {
     }
 
     fn svg(&self) -> Option<String> {
-        let labels = &self.0.labels;
-        let mut map = ConfusionMap::new(labels, labels, self.0.confusion.rows())?;
+        let mut map = ConfusionMap::new(&self.0.labels, self.0.confusion.rows())?;
         map.title = format!("error {}", percent(self.0.error()));
         if let Some(certainty) = self.0.certainty {
             let certain = percent(share(certainty.touches, self.0.touches));

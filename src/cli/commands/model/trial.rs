@@ -1,22 +1,19 @@
-//! What a trial of a model says, in words, as a table, as JSON and as a drawing: of `taxel model confusion --test`, and
+//! What a trial of a model says, in words, as a table and as JSON: of `taxel model confusion --test`, and
 //! of `taxel frames --expect-labels`.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::iter;
+use std::collections::BTreeMap;
 
 use serde::Serialize;
 use serde_json::Value;
 use taxel_core::parameter::number::{differing, share};
 use taxel_core::recognition::{Tally, Trial};
-use taxel_files::formats::value::{counted, csv_line, grouped, percent};
-use taxel_files::formats::{ConfusionMap, json};
+use taxel_files::formats::json;
+use taxel_files::formats::value::{counted, percent};
 
 use crate::cli::commands::model::Table;
-use crate::cli::output::evaluation::{cell, count};
-use crate::cli::output::table::{Record, row, table};
-
-/// The most shapes of a table with all of them. Of more, it has those with mistakes.
-const MOST_SHOWN: usize = 12;
+use crate::cli::commands::model::confusion::square;
+use crate::cli::output::evaluation::{cell, count, matrix_csv, shares};
+use crate::cli::output::table::{Record, table};
 
 pub(crate) struct TrialReport<'a> {
     pub(crate) trial: &'a Trial,
@@ -26,24 +23,6 @@ pub(crate) struct TrialReport<'a> {
     pub(crate) note: String,
     /// The same at the beginning of JSON.
     pub(crate) keys: Vec<(&'static str, Value)>,
-}
-
-/// A line of the confusion table.
-struct Row<'a> {
-    label: &'a str,
-    /// The touches by the name that they got; the last are unknown.
-    counts: Vec<u128>,
-    /// The column of right answers.
-    right: usize,
-}
-
-impl Row<'_> {
-    /// The columns of wrong answers.
-    fn mistakes(&self) -> impl Iterator<Item = usize> {
-        let columns = self.counts.iter().enumerate();
-        let columns = columns.filter(|&(column, &count)| count > 0 && column != self.right);
-        columns.map(|(column, _)| column)
-    }
 }
 
 #[derive(Serialize)]
@@ -87,23 +66,12 @@ impl TrialReport<'_> {
         Some(&self.trial.foreign).filter(|foreign| !foreign.labels.is_empty())
     }
 
-    /// The shapes of the model, then the foreign ones.
-    fn rows(&self) -> Vec<Row<'_>> {
+    /// The shapes of the model, then the foreign ones, and the touches of each by the name that they got; the last are
+    /// unknown.
+    fn rows(&self) -> (Vec<String>, Vec<Vec<u128>>) {
         let tallies = [&self.trial.known, &self.trial.foreign].into_iter();
-        let rows = tallies.flat_map(|tally| {
-            let rows = tally.labels.iter().zip(tally.confusion.rows()).enumerate();
-            rows.map(|(row, (label, counts))| Row {
-                label,
-                counts,
-                right: tally.right_column(row),
-            })
-        });
-        rows.collect()
-    }
-
-    fn columns(&self) -> Vec<String> {
-        let names = self.trial.known.labels.iter().cloned();
-        names.chain(iter::once("unknown".to_owned())).collect()
+        let rows = tallies.flat_map(|own| own.labels.iter().cloned().zip(own.confusion.rows()));
+        rows.unzip()
     }
 
     /// How many touches are right, wrong and unknown, and how well shapes fit them.
@@ -114,62 +82,26 @@ impl TrialReport<'_> {
             format!("median: {}", differing(median))
         });
         let exact = ("fits exactly", exact.into(), &*median);
-        let rows = counts.iter().copied().chain([exact]);
-        let rows = rows.map(|(name, count, note)| {
-            let part = percent(share(count, touches));
-            row([name, &grouped(count), &part, note])
-        });
+        let counts = counts.iter().copied().chain([exact]);
         let title = format!("{} of {of}\n", counted(touches, self.noun));
-        title + &table(&rows.collect::<Vec<_>>(), &[0, 3])
+        title + &shares(touches, counts)
     }
 
-    /// The confusion table, or the part of it with mistakes if it is large; empty if there are none then.
+    /// Right answers are in brackets: the name of a shape of the model, otherwise unknown.
     fn confusion(&self) -> String {
-        let rows = self.rows();
+        let (labels, counts) = self.rows();
         let names = self.trial.known.labels.len();
-        let all = rows.len() <= MOST_SHOWN;
-        let taken: BTreeSet<usize> = rows.iter().flat_map(Row::mistakes).collect();
-        let is_shown = |number: usize, row: &Row| {
-            all || row.mistakes().next().is_some() || number < names && taken.contains(&number)
-        };
-        let shown: Vec<(usize, &Row)> = rows
-            .iter()
-            .enumerate()
-            .filter(|(number, row)| is_shown(*number, row))
-            .collect();
-        let is_used = |&column: &usize| all || shown.iter().any(|(_, row)| row.counts[column] > 0);
-        let columns: Vec<usize> = (0..=names).filter(is_used).collect();
-        if shown.is_empty() {
-            return String::new();
-        }
-        let title = |&column: &usize| {
-            if column == names {
-                "unknown ".to_owned()
-            } else {
-                format!("{} ", column + 1)
-            }
-        };
-        let titles = columns.iter().map(title);
-        let titles = iter::once(String::new()).chain(titles);
-        let mut lines = vec![titles.chain(["right".to_owned()]).collect()];
-        let digits = rows.len().to_string().len();
-        for (number, row) in shown {
-            let label = format!("{:>digits$} {}", number + 1, row.label);
-            let cells = columns.iter();
-            let cells = cells.map(|&column| cell(row.counts[column], column == row.right));
-            let right = match row.counts.iter().sum() {
+        let cell = |row: usize, column: usize| cell(counts[row][column], column == row.min(names));
+        let mut lines = square(&labels, names, cell);
+        lines[0].extend(["unknown ", "right"].map(str::to_owned));
+        for (row, counts) in counts.iter().enumerate() {
+            let right = match counts.iter().sum() {
                 0 => "–".to_owned(),
-                touches => percent(share(row.counts[row.right], touches)),
+                touches => percent(share(counts[row.min(names)], touches)),
             };
-            let line = iter::once(label).chain(cells).chain([right]);
-            lines.push(line.collect());
+            lines[row + 1].extend([cell(row, names), right]);
         }
-        let left_out = if all {
-            ""
-        } else {
-            "shapes without mistakes are left out\n"
-        };
-        format!("\n{}{left_out}", table(&lines, &[0]))
+        table(&lines, &[0])
     }
 }
 
@@ -200,18 +132,13 @@ impl Table for TrialReport<'_> {
             ];
             text += &self.summary(foreign, "foreign shapes", &counts);
         }
-        text + &self.note + "\n" + &self.confusion()
+        text + &self.note + "\n\n" + &self.confusion()
     }
 
     fn csv(&self) -> String {
-        let columns = self.columns();
-        let titles = iter::once("true").chain(columns.iter().map(String::as_str));
-        let mut table = csv_line(titles);
-        for row in self.rows() {
-            let counts = row.counts.iter().map(u128::to_string);
-            table += &csv_line(iter::once(row.label.to_owned()).chain(counts));
-        }
-        table
+        let (labels, counts) = self.rows();
+        let names = [&*self.trial.known.labels, &["unknown".to_owned()]].concat();
+        matrix_csv(&labels, &names, counts)
     }
 
     fn json(&self) -> String {
@@ -222,15 +149,5 @@ impl Table for TrialReport<'_> {
             foreign: self.foreign().map(|foreign| TallyJson::of(foreign, None)),
         };
         json::ascii(&answer) + "\n"
-    }
-
-    fn svg(&self) -> Option<String> {
-        let rows = self.rows();
-        let labels: Vec<String> = rows.iter().map(|row| row.label.to_owned()).collect();
-        let counts = rows.into_iter().map(|row| row.counts);
-        let mut map = ConfusionMap::new(&labels, &self.columns(), counts)?;
-        let known = &self.trial.known;
-        map.title = format!("right {}", percent(share(known.right(), known.touches())));
-        Some(map.svg())
     }
 }

@@ -1,5 +1,4 @@
-//! A confusion matrix as a heat map with its numbers: a row per true shape, a column per name. Other columns, such as
-//! one of unknown touches, may follow those of the shapes.
+//! A confusion matrix as a heat map with its numbers: a row per true shape, a column per name.
 //!
 //! A cell holds a number of touches and its share of the row; the larger the share, the darker the cell. The numbers
 //! are there for readers who cannot tell the shades apart.
@@ -11,8 +10,8 @@ use crate::formats::drawing::svg::{
 };
 use crate::formats::value::percent;
 
-/// The most shapes and the most names; more would make a page too large to print.
-const MOST: usize = 65;
+/// The most shapes; more would make a page too large to print.
+const MOST: usize = 64;
 
 /// The most characters of a name; longer ones are cut.
 const LONGEST: usize = 30;
@@ -25,13 +24,12 @@ const DARKEST: f64 = 160.0;
 /// ```
 /// use taxel_files::formats::ConfusionMap;
 /// let labels = ["disc", "bar"].map(str::to_owned);
-/// let map = ConfusionMap::new(&labels, &labels, [vec![9, 1], vec![0, 10]]).expect("few shapes");
+/// let map = ConfusionMap::new(&labels, [vec![9, 1], vec![0, 10]]).expect("few shapes");
 /// assert!(map.svg().contains(">90 %</text>"));
 /// ```
 #[derive(Clone, Debug)]
 pub struct ConfusionMap {
     labels: Vec<String>,
-    names: Vec<String>,
     /// The touches by true shape and by the name given.
     counts: Vec<Vec<u128>>,
     /// What stands above; only its first 100 characters are drawn.
@@ -39,43 +37,34 @@ pub struct ConfusionMap {
 }
 
 impl ConfusionMap {
-    /// Makes the matrix of some shapes: `counts[i][j]` touches of shape i are named j; missing counts are 0. The name j
-    /// is right for shape j; for shapes beyond the last name, that name is. None if there are no shapes or no names, or
-    /// more than 65 of them.
-    pub fn new(
-        labels: &[String],
-        names: &[String],
-        counts: impl IntoIterator<Item = Vec<u128>>,
-    ) -> Option<Self> {
-        if [labels, names]
-            .iter()
-            .any(|own| !(1..=MOST).contains(&own.len()))
-        {
+    /// Makes the matrix of some shapes: `counts[i][j]` touches of shape i are named j; missing counts are 0. None if
+    /// there are no shapes, or more than 64.
+    pub fn new(labels: &[String], counts: impl IntoIterator<Item = Vec<u128>>) -> Option<Self> {
+        if !(1..=MOST).contains(&labels.len()) {
             return None;
         }
-        let cut = |label: &String| label.chars().take(LONGEST).collect();
         let mut counts: Vec<Vec<u128>> = counts.into_iter().collect();
         counts.resize(labels.len(), Vec::new());
         for row in &mut counts {
-            row.resize(names.len(), 0);
+            row.resize(labels.len(), 0);
         }
+        let cut = |label: &String| label.chars().take(LONGEST).collect();
         Some(Self {
             labels: labels.iter().map(cut).collect(),
-            names: names.iter().map(cut).collect(),
             counts,
             title: String::new(),
         })
     }
 
     /// The matrix as SVG 1.1.
-    #[expect(clippy::cast_precision_loss, reason = "at most 65 cells")]
+    #[expect(clippy::cast_precision_loss, reason = "at most 64 cells")]
     pub fn svg(&self) -> String {
-        let (shapes, names) = (self.labels.len(), self.names.len());
+        let shapes = self.labels.len();
         let most = self.counts.iter().flatten().max();
         let digits = most.map_or(0.0, |most| width(&most.to_string()));
         let cell = (digits.max(width("<0.1 % ")) + 8.0, TEXT * 2.0 + 8.0);
         let place = |row: usize, column: usize| (cell.0 * column as f64, cell.1 * row as f64);
-        let mut svg = Svg::new(place(shapes, names));
+        let mut svg = Svg::new(place(shapes, shapes));
         let (mut cells, mut diagonal, mut numbers) = (String::new(), String::new(), Vec::new());
         for (row, counts) in self.counts.iter().enumerate() {
             let sum = counts
@@ -94,7 +83,7 @@ impl ConfusionMap {
                 } else {
                     numbers.push(("·".to_owned(), (x, low.1 + TEXT * 1.5)));
                 }
-                if column == row.min(names - 1) {
+                if column == row {
                     diagonal += &outline;
                 }
                 cells += &outline;
@@ -106,14 +95,17 @@ impl ConfusionMap {
         for (text, place) in numbers {
             svg.text(&text, place, TextAnchor::Middle);
         }
-        let axis = |title: &str, labels: &[String], side: f64| Axis {
+        let axis = |title: &str, side: f64| Axis {
             title: title.to_owned(),
             ends: (0.0, 1.0),
             span: (side / 2.0, side * 1.5),
-            marks: (0..).map(f64::from).zip(labels.iter().cloned()).collect(),
+            marks: (0..)
+                .map(f64::from)
+                .zip(self.labels.iter().cloned())
+                .collect(),
         };
-        let across = axis("named", &self.names, cell.0);
-        let along = axis("true shape", &self.labels, cell.1);
+        let across = axis("named", cell.0);
+        let along = axis("true shape", cell.1);
         svg.axes(AxisMarks::Outside, &across, &along);
         let below = (0.0, svg.below());
         let note = "touches, and their share of the true shape's";
