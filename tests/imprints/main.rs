@@ -42,3 +42,5 @@ mod outlines;
 mod reference;
 
 mod sweep;
+
+mod drawings;

@@ -624,7 +624,7 @@ impl Piece {
     /// negative.
     fn beside(&self, size: f64) -> [f64; 2] {
         let [dx, dy] = [0, 1].map(|axis| self.to[axis] - self.from[axis]);
-        let way = 1e-7 * size / libm::hypot(dx, dy);
+        let way = 1e-13 * size / libm::hypot(dx, dy);
         let [x, y] = [0, 1].map(|axis| f64::midpoint(self.from[axis], self.to[axis]));
         [x - dy * way, y + dx * way]
     }

@@ -19,6 +19,7 @@ mod model;
 pub mod name;
 mod named_shape;
 pub mod numpy;
+mod outline;
 mod pbm;
 mod record;
 pub mod recording;
@@ -37,6 +38,10 @@ pub use name::Name;
 pub use job::Job;
 
 pub use shape::StoredShape;
+
+pub use outline::{
+    FLATNESS, MAX_DRAWING_BYTES, OutlineOptions, OutlineUnit, ReadOutline, is_svg, read_outline,
+};
 
 pub use numpy::archive::kind_of as archive_kind;
 

@@ -51,7 +51,7 @@ fn lines(text: &str) -> impl Iterator<Item = (u64, &str)> {
 }
 
 /// The fields of a line. A separator at its end is no field.
-fn fields(line: &str) -> Box<dyn Iterator<Item = &str> + '_> {
+pub(super) fn fields(line: &str) -> Box<dyn Iterator<Item = &str> + '_> {
     let found = ['\t', ';', ',']
         .into_iter()
         .find(|mark| line.contains(*mark));

@@ -2,6 +2,7 @@
 
 use taxel::cli::settings::Settings;
 use taxel_core::imprint::Imprint;
+use taxel_core::outline::{Outline, Ring};
 use taxel_core::picture::Picture;
 use taxel_core::pose::{DecimalRange, MAX_VALUES};
 use taxel_core::sensor::Sensor;
@@ -9,7 +10,8 @@ use taxel_core::sweep::Shard;
 use taxel_core::touch::Plane;
 use taxel_files::formats::numpy::{Elements, Header, Number, header};
 use taxel_files::formats::{
-    DescribedImprint, Drawing, ExportFormat, Job, StoredShape, imprint_file,
+    DescribedImprint, Drawing, ExportFormat, Job, OutlineOptions, StoredShape, imprint_file,
+    is_svg, read_outline,
 };
 
 use super::{is_short, refused};
@@ -72,6 +74,54 @@ pub(crate) fn exchange(bytes: &[u8]) -> bool {
             }
             true
         }
+        Err(error) => refused(&error.to_string()),
+    }
+}
+
+/// Reads an SVG, or the data of a path in each line. Its rings are always an outline.
+pub(crate) fn svg(bytes: &[u8]) -> bool {
+    let mut document = String::from_utf8_lossy(bytes).into_owned();
+    if !is_svg(bytes) {
+        let data = document.replace(['<', '&', '"'], " ");
+        let path = |data: &str| format!("<path fill-rule=\"evenodd\" d=\"{data}\"/>");
+        document = format!("<svg>{}</svg>", data.lines().map(path).collect::<String>());
+    }
+    match read_outline(document.as_bytes(), &OutlineOptions::default()) {
+        Ok(read) => {
+            Outline::new(read.rings, None).expect("rings that do not cross");
+            true
+        }
+        Err(error) => refused(&error.to_string()),
+    }
+}
+
+/// Reads points.
+pub(crate) fn points(bytes: &[u8]) -> bool {
+    let options = OutlineOptions::default();
+    match read_outline(bytes, &options) {
+        Ok(read) if !is_svg(bytes) => {
+            let mut text = String::new();
+            for ring in &read.rings {
+                let Ring::Polygon(points) = ring else {
+                    panic!("points are polygons");
+                };
+                // Closed, so that a ring that ends as it begins is the same again.
+                for [x, y] in points.iter().chain(&points[..1]) {
+                    text += &format!("{x:?},{y:?}\n");
+                }
+                text.push('\n');
+            }
+            let again = read_outline(text.as_bytes(), &options);
+            if read
+                .rings
+                .iter()
+                .all(|ring| matches!(ring, Ring::Polygon(points) if points.len() > 2))
+            {
+                assert_eq!(again.as_ref(), Ok(&read));
+            }
+            true
+        }
+        Ok(_) => true,
         Err(error) => refused(&error.to_string()),
     }
 }

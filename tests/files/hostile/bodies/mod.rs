@@ -22,11 +22,13 @@ pub(crate) use screen::session_of;
 pub(crate) type Body = (&'static str, &'static str, fn(&[u8]) -> bool);
 
 /// All bodies.
-pub(crate) const BODIES: [Body; 19] = [
+pub(crate) const BODIES: [Body; 21] = [
     ("shape", "shape", formats::shape),
     ("job", "job", formats::job),
     ("imprint", "imprint", formats::imprint),
     ("exchange", "exchange", formats::exchange),
+    ("svg", "svg", formats::svg),
+    ("points", "points", formats::points),
     ("range", "range", formats::range),
     ("npy", "npy", formats::npy),
     ("archive", "archive", archive::archive),
