@@ -46,11 +46,8 @@ pub(super) fn is_matsense(head: &[u8], options: &ReadOptions, is_all: bool) -> b
 }
 
 /// Reads the frames of a `FlexiTac`.
-pub(super) fn flexitac(
-    input: &mut dyn BufRead,
-    options: &ReadOptions,
-    sink: &mut Sink<'_>,
-) -> Result<(), Stop> {
+pub(super) fn flexitac(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), Stop> {
+    let options = sink.options;
     let Some(size) = options.size else {
         let (mut head, mut ended) = (Vec::new(), false);
         let values = loop {
@@ -66,7 +63,7 @@ pub(super) fn flexitac(
         return Err(unshaped(values.saturating_sub(MARKER.len()) as u64, None).into());
     };
     let mut frames = MarkedFrames {
-        board: Board::new(size, options, sink)?,
+        board: Board::new(size, sink)?,
         bytes: Vec::new(),
         start: if options.is_joined {
             Start::Anywhere
@@ -110,7 +107,6 @@ fn take_bytes(
 
 /// What gives the frames of a board, and counts those that are none.
 struct Board<'a, 'b> {
-    options: &'a ReadOptions,
     sink: &'a mut Sink<'b>,
     channel: usize,
     frame: Frame,
@@ -118,20 +114,14 @@ struct Board<'a, 'b> {
 }
 
 impl<'a, 'b> Board<'a, 'b> {
-    fn new(
-        size: FrameSize,
-        options: &'a ReadOptions,
-        sink: &'a mut Sink<'b>,
-    ) -> Result<Self, Stop> {
-        let info = || ChannelInfo::of_size(size);
-        let channel = sink.channel(None, info)?;
-        let frame = Frame::new(size);
+    fn new(size: FrameSize, sink: &'a mut Sink<'b>) -> Result<Self, Stop> {
+        let channel = sink.channel(None, || ChannelInfo::of_size(size))?;
+        let (frame, garbled) = (Frame::new(size), 0);
         Ok(Self {
-            options,
             sink,
             channel,
             frame,
-            garbled: 0,
+            garbled,
         })
     }
 
@@ -149,17 +139,16 @@ impl<'a, 'b> Board<'a, 'b> {
     /// Counts frames that are none. Without a checksum, a file cannot be refused for them.
     fn lose(&mut self, frames: u64, bytes: &[u8], message: &str) -> Result<(), Stop> {
         self.garbled += frames;
-        if self.options.leaves_out {
+        if self.sink.options.leaves_out {
             for _ in 0..frames {
-                self.sink
-                    .damage(self.options, ReadError::new(message), bytes)?;
+                self.sink.damage(ReadError::new(message), bytes)?;
             }
         }
         Ok(())
     }
 
     fn finish(&mut self) -> Result<(), Stop> {
-        if self.garbled > 0 && !self.options.leaves_out {
+        if self.garbled > 0 && !self.sink.options.leaves_out {
             let frames = counted(self.garbled, "frame");
             let text = format!("{frames} dropped (torn, short, long or garbled)");
             self.sink.note(&RecordingNote::Oddity(text))?;
@@ -334,11 +323,8 @@ fn framing(
 }
 
 /// Reads the frames of a `MatSense`, in the framing that its first bytes show.
-pub(super) fn matsense(
-    input: &mut dyn BufRead,
-    options: &ReadOptions,
-    sink: &mut Sink<'_>,
-) -> Result<(), Stop> {
+pub(super) fn matsense(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), Stop> {
+    let options = sink.options;
     let Some(size) = options.size else {
         let message = "the rows and columns of a frame of bytes are not stated";
         return Err(ReadError::new(message)
@@ -356,7 +342,7 @@ pub(super) fn matsense(
             found => break found.unwrap_or(&ENDED),
         }
     };
-    let mut board = Board::new(size, options, sink)?;
+    let mut board = Board::new(size, sink)?;
     let mut frame = SplitFrame::new(found, cells, options);
     loop {
         for &byte in &bytes {

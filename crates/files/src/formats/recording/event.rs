@@ -253,7 +253,7 @@ pub type RecordingSink<'a> = dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()> + 
 
 /// The reason why a reader ends before the end of its input.
 #[derive(Debug)]
-pub(in crate::formats) enum Stop {
+pub(crate) enum Stop {
     /// No more is wanted.
     Enough,
     Failed(ReadError),
@@ -268,7 +268,7 @@ impl<E: Into<ReadError>> From<E> for Stop {
 /// What goes on when a stream is read again after an interruption: its channels, the number of the next frame of each,
 /// and its clock.
 #[derive(Debug, Default)]
-pub(in crate::formats) struct ReadState {
+pub(crate) struct ReadState {
     channels: Vec<(ChannelInfo, u64)>,
     /// The number of channels that were not reported: the one without a name of a stream that names none.
     unreported: usize,
@@ -281,21 +281,15 @@ pub(in crate::formats) struct ReadState {
 }
 
 /// Where a reader puts what it finds.
-pub(in crate::formats) struct Sink<'a> {
-    consumer: &'a mut RecordingSink<'a>,
+pub(crate) struct Sink<'a> {
+    pub(super) consumer: &'a mut RecordingSink<'a>,
     pub(super) state: &'a mut ReadState,
+    pub(super) options: &'a ReadOptions,
 }
 
-impl<'a> Sink<'a> {
-    pub(in crate::formats) fn new(
-        consumer: &'a mut RecordingSink<'a>,
-        state: &'a mut ReadState,
-    ) -> Self {
-        Self { consumer, state }
-    }
-
+impl Sink<'_> {
     /// Reports an event as it is.
-    pub(in crate::formats) fn event(&mut self, event: RecordingEvent<'_>) -> Result<(), Stop> {
+    pub(crate) fn event(&mut self, event: RecordingEvent<'_>) -> Result<(), Stop> {
         match (self.consumer)(event) {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(Stop::Enough),
@@ -304,7 +298,7 @@ impl<'a> Sink<'a> {
 
     /// Returns the index of the channel with that name; reports it if it is new. A limit keeps names that change with
     /// every frame from filling the memory.
-    pub(in crate::formats) fn channel(
+    pub(crate) fn channel(
         &mut self,
         name: Option<&str>,
         info: impl FnOnce() -> ChannelInfo,
@@ -338,11 +332,7 @@ impl<'a> Sink<'a> {
     }
 
     /// Reports a frame of this channel, with its number.
-    pub(in crate::formats) fn frame(
-        &mut self,
-        channel: usize,
-        frame: &mut Frame,
-    ) -> Result<(), Stop> {
+    pub(crate) fn frame(&mut self, channel: usize, frame: &mut Frame) -> Result<(), Stop> {
         frame.channel = channel;
         frame.number = self.state.channels[channel].1;
         self.state.channels[channel].1 += 1;
@@ -350,11 +340,7 @@ impl<'a> Sink<'a> {
     }
 
     /// Notes the first time of a channel that cannot be read: the text in its place.
-    pub(in crate::formats) fn unread_time(
-        &mut self,
-        channel: usize,
-        text: &str,
-    ) -> Result<(), Stop> {
+    pub(crate) fn unread_time(&mut self, channel: usize, text: &str) -> Result<(), Stop> {
         if std::mem::replace(&mut self.state.lacks_time, true) {
             return Ok(());
         }
@@ -364,20 +350,16 @@ impl<'a> Sink<'a> {
         )))
     }
 
-    pub(in crate::formats) fn note(&mut self, note: &RecordingNote) -> Result<(), Stop> {
+    pub(crate) fn note(&mut self, note: &RecordingNote) -> Result<(), Stop> {
         self.event(RecordingEvent::Note(note))
     }
 
     /// Reads the next line; one that is too long is a wrong frame.
-    pub(super) fn advance(
-        &mut self,
-        lines: &mut TextLines<impl BufRead>,
-        options: &ReadOptions,
-    ) -> Result<bool, Stop> {
+    pub(super) fn advance(&mut self, lines: &mut TextLines<impl BufRead>) -> Result<bool, Stop> {
         loop {
             match lines.advance() {
                 Err(error) if error.kind == ReadErrorKind::Invalid => {
-                    self.damage(options, error, b"")?;
+                    self.damage(error, b"")?;
                 }
                 read => return Ok(read?),
             }
@@ -385,17 +367,12 @@ impl<'a> Sink<'a> {
     }
 
     /// Reports a wrong frame that is left out, if it may be; otherwise it ends the reading.
-    pub(in crate::formats) fn damage(
-        &mut self,
-        options: &ReadOptions,
-        error: ReadError,
-        bytes: &[u8],
-    ) -> Result<(), Stop> {
+    pub(crate) fn damage(&mut self, error: ReadError, bytes: &[u8]) -> Result<(), Stop> {
         let damage = RecordingEvent::Damage {
             error: &error,
             bytes,
         };
-        if options.leaves_out && self.event(damage).is_ok() {
+        if self.options.leaves_out && self.event(damage).is_ok() {
             Ok(())
         } else {
             Err(error.into())

@@ -40,9 +40,9 @@ pub struct Format {
 pub(super) enum Reader {
     /// Reads bytes as they come: recordings and streams alike. `fill_buf` waits for more; empty is the end, and
     /// [`io::ErrorKind::UnexpectedEof`] an end that may have cut a line.
-    Bytes(fn(&mut dyn BufRead, &ReadOptions, &mut Sink<'_>) -> Result<(), Stop>),
+    Bytes(fn(&mut dyn BufRead, &mut Sink<'_>) -> Result<(), Stop>),
     /// Needs the whole file.
-    File(fn(&mut dyn ReadSeek, &ReadOptions, &mut Sink<'_>) -> Result<(), Stop>),
+    File(fn(&mut dyn ReadSeek, &mut Sink<'_>) -> Result<(), Stop>),
 }
 
 /// A file that is read in any order.
@@ -57,42 +57,42 @@ pub static FORMATS: [Format; 10] = [
         title: "Tekscan ASCII",
         stream: None,
         sniff: |head, _, _| is_tekscan(head),
-        read: Reader::Bytes(|input, _, sink| tekscan::read(input, sink)),
+        read: Reader::Bytes(tekscan::read),
     },
     Format {
         name: "xsensor",
         title: "XSENSOR CSV",
         stream: None,
         sniff: |head, _, _| is_xsensor(head),
-        read: Reader::Bytes(|input, _, sink| xsensor::read(input, sink)),
+        read: Reader::Bytes(xsensor::read),
     },
     Format {
         name: "npy",
         title: "NPY",
         stream: None,
         sniff: |head, _, _| head.starts_with(MAGIC),
-        read: Reader::File(|input, options, sink| numpy::read_array(input, options, sink)),
+        read: Reader::File(|input, sink| numpy::read_array(input, sink)),
     },
     Format {
         name: "npz",
         title: "NPZ",
         stream: None,
         sniff: |head, _, _| head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06"),
-        read: Reader::File(|input, options, sink| numpy::read_archive(input, options, sink)),
+        read: Reader::File(|input, sink| numpy::read_archive(input, sink)),
     },
     Format {
         name: "mcap",
         title: "MCAP",
         stream: None,
         sniff: |head, _, _| head.starts_with(&MCAP_MAGIC),
-        read: Reader::File(|input, options, sink| mcap::read(input, options, sink)),
+        read: Reader::File(|input, sink| mcap::read(input, sink)),
     },
     Format {
         name: "jsonl",
         title: "JSON lines",
         stream: Some("jsonl"),
         sniff: |head, options, _| is_json(head, options),
-        read: Reader::Bytes(|input, options, sink| json_lines::read(input, options, sink)),
+        read: Reader::Bytes(json_lines::read),
     },
     Format {
         name: "ros2",
@@ -215,10 +215,15 @@ pub fn read(
     input.rewind()?;
     let mut input = BufReader::with_capacity(CHUNK, input);
     let mut state = ReadState::default();
-    let mut sink = Sink::new(consumer, &mut state);
+    let state = &mut state;
+    let mut sink = Sink {
+        consumer,
+        state,
+        options,
+    };
     let read = match format.read {
-        Reader::Bytes(read) => read(&mut input, options, &mut sink),
-        Reader::File(read) => read(&mut input, options, &mut sink),
+        Reader::Bytes(read) => read(&mut input, &mut sink),
+        Reader::File(read) => read(&mut input, &mut sink),
     };
     match read {
         Ok(()) | Err(Stop::Enough) => Ok(format),

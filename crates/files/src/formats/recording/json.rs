@@ -75,11 +75,7 @@ impl Name {
     }
 }
 
-pub(super) fn read(
-    input: &mut dyn BufRead,
-    options: &ReadOptions,
-    sink: &mut Sink<'_>,
-) -> Result<(), Stop> {
+pub(super) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), Stop> {
     let mut lines = TextLines::new(input);
     let mut sizes = BTreeMap::new();
     let mut frame = Frame::default();
@@ -87,11 +83,11 @@ pub(super) fn read(
     loop {
         let read = match lines.advance_to_content() {
             Ok(false) => return Ok(()),
-            Ok(true) => FrameLine::read(lines.line(), options, &mut frame),
+            Ok(true) => FrameLine::read(lines.line(), sink.options, &mut frame),
             // A line that is too long.
             Err(error) => Err(error),
         };
-        let is_rest = options.is_joined && lines.number() == 1;
+        let is_rest = sink.options.is_joined && lines.number() == 1;
         let error = match read {
             Ok(line) => {
                 let size = frame.size();
@@ -112,12 +108,12 @@ pub(super) fn read(
             }
             Err(error) => error,
         };
-        if is_first && !options.leaves_out && !is_meant(lines.line()) {
+        if is_first && !sink.options.leaves_out && !is_meant(lines.line()) {
             let kind = "JSON, but not of an object with a key \"frame\" in each line";
             return Err(foreign(kind).into());
         }
         if !is_rest {
-            sink.damage(options, error.in_line(lines.number()), lines.line())?;
+            sink.damage(error.in_line(lines.number()), lines.line())?;
         }
     }
 }

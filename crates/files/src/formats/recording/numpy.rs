@@ -33,7 +33,7 @@ use crate::formats::job::too_large;
 use crate::formats::numpy::archive::{in_array, refused};
 use crate::formats::numpy::{Elements, Field, Header, Number};
 use crate::formats::recording::error::{foreign, unshaped};
-use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingNote, Sink, Stop};
+use crate::formats::recording::event::{ChannelInfo, RecordingNote, Sink, Stop};
 use crate::formats::recording::size::frame_size;
 use crate::formats::recording::table::is_label;
 use crate::formats::recording::time::{FrameClock, Time, TimeUnit, time_name};
@@ -256,14 +256,10 @@ impl TimeType {
     }
 }
 
-pub(super) fn read_array(
-    input: &mut dyn Read,
-    options: &ReadOptions,
-    sink: &mut Sink<'_>,
-) -> Result<(), Stop> {
+pub(super) fn read_array(input: &mut dyn Read, sink: &mut Sink<'_>) -> Result<(), Stop> {
     let header = Header::read(input)?;
-    let layout = Layout::of(&header, options.size)?;
-    let channels = report(&header, &layout, None, options, sink)?;
+    let layout = Layout::of(&header, sink.options.size)?;
+    let channels = report(&header, &layout, None, sink)?;
     frames(input, &header, &layout, &channels, &[], sink)
 }
 
@@ -272,7 +268,6 @@ fn report(
     header: &Header,
     layout: &Layout,
     array: Option<&str>,
-    options: &ReadOptions,
     sink: &mut Sink<'_>,
 ) -> Result<Vec<usize>, Stop> {
     let mut channels = Vec::new();
@@ -282,7 +277,7 @@ fn report(
         let (rows, columns) = (cells.size.rows(), cells.size.columns());
         // Few sensors are that large, so a row may well be a frame.
         let is_large = rows.max(columns) > MAX_SIDE.into();
-        if header.shape.len() == 2 && options.size.is_none() && is_large {
+        if header.shape.len() == 2 && sink.options.size.is_none() && is_large {
             let text = format!(
                 "an array of {rows} × {columns}, taken as one frame, though each of its {rows} rows may be a frame of {columns} values"
             );
@@ -385,16 +380,12 @@ impl ArchiveArray {
     }
 }
 
-pub(super) fn read_archive(
-    input: impl Read + Seek,
-    options: &ReadOptions,
-    sink: &mut Sink<'_>,
-) -> Result<(), Stop> {
+pub(super) fn read_archive(input: impl Read + Seek, sink: &mut Sink<'_>) -> Result<(), Stop> {
     let archive = &mut ZipArchive::new(input).map_err(refused)?;
     let arrays = arrays(archive)?;
     let mut channels = Vec::new();
-    for (array, layout) in self::channels(&arrays, options)? {
-        let numbers = report(&array.header, &layout, Some(&array.name), options, sink)?;
+    for (array, layout) in self::channels(&arrays, sink.options.size)? {
+        let numbers = report(&array.header, &layout, Some(&array.name), sink)?;
         channels.push((array, layout, numbers));
     }
     let mut noted = None;
@@ -451,7 +442,7 @@ fn arrays<R: Read + Seek>(archive: &mut ZipArchive<R>) -> Result<Vec<ArchiveArra
 /// The arrays whose numbers can be frames. Others, such as a list of poses, may lie beside them.
 fn channels<'a>(
     arrays: &'a [ArchiveArray],
-    options: &ReadOptions,
+    asked: Option<FrameSize>,
 ) -> Result<Vec<(&'a ArchiveArray, Layout)>, ReadError> {
     let may_be = |array: &&ArchiveArray| array.header.shape.len() > 1 && !array.code().is_empty();
     let arrays: Vec<_> = arrays.iter().filter(may_be).collect();
@@ -459,7 +450,7 @@ fn channels<'a>(
     let mut error = ReadError::new(message);
     let mut channels = Vec::new();
     for array in &arrays {
-        let mut layout = Layout::of(&array.header, options.size);
+        let mut layout = Layout::of(&array.header, asked);
         // Rows and columns that are meant for one of several arrays need not fit the others.
         if layout.is_err() && arrays.len() > 1 {
             layout = Layout::of(&array.header, None);
@@ -524,7 +515,7 @@ mod tests {
 
     use super::*;
     use crate::formats::numpy::header_of;
-    use crate::formats::recording::{RecordingEvent, read};
+    use crate::formats::recording::{ReadOptions, RecordingEvent, read};
 
     fn array(code: &str, shape: &str, numbers: &[u8]) -> Vec<u8> {
         let text = format!("{{'descr': {code}, 'fortran_order': False, 'shape': ({shape}), }}");

@@ -10,18 +10,18 @@ use taxel_core::sensor::Sensor;
 use crate::error::ReadError;
 
 /// Returns a number of rows or columns; None if it is 0 or larger than a frame can be.
-pub(in crate::formats) fn side(length: impl TryInto<u16>) -> Option<u16> {
+pub(crate) fn side(length: impl TryInto<u16>) -> Option<u16> {
     let length = length.try_into().ok();
     length.filter(|side| FrameSize::SIDES.contains(side))
 }
 
 /// Returns the size of a frame; None if a side is out of range.
-pub(in crate::formats) fn frame_size<T: TryInto<u16>>(columns: T, rows: T) -> Option<FrameSize> {
+pub(crate) fn frame_size<T: TryInto<u16>>(columns: T, rows: T) -> Option<FrameSize> {
     FrameSize::of_sides(side(columns), side(rows))
 }
 
 /// Returns the rows and columns of an array with these sizes: the first two, if all others are 1.
-pub(in crate::formats) fn matrix_size(sizes: &[u32]) -> Option<FrameSize> {
+pub(crate) fn matrix_size(sizes: &[u32]) -> Option<FrameSize> {
     match *sizes {
         [rows, columns, ref rest @ ..] if rest.iter().all(|&size| size == 1) => {
             frame_size(columns, rows)

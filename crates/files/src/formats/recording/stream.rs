@@ -130,10 +130,15 @@ impl StreamReader {
                 None => return Ok(()),
             },
         };
-        let sink = &mut Sink::new(consumer, &mut self.state);
+        let (state, options) = (&mut self.state, &options);
+        let sink = &mut Sink {
+            consumer,
+            state,
+            options,
+        };
         let mut input = head.as_slice().chain(input);
         let read = match format.read {
-            Reader::Bytes(read) if format.stream.is_some() => read(&mut input, &options, sink),
+            Reader::Bytes(read) if format.stream.is_some() => read(&mut input, sink),
             _ => return Err(not_a_stream(format)),
         };
         match read {

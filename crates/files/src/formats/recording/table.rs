@@ -147,17 +147,13 @@ fn bare(line: &[u8]) -> (Option<&[u8]>, &[u8]) {
 }
 
 /// Reads a table.
-pub(super) fn read(
-    input: &mut dyn BufRead,
-    options: &ReadOptions,
-    sink: &mut Sink<'_>,
-) -> Result<(), Stop> {
+pub(super) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), Stop> {
+    let is_inside = sink.options.is_joined;
     let mut table = Table {
         lines: TextLines::new(input),
-        options,
         sink,
         is_one: false,
-        is_inside: options.is_joined,
+        is_inside,
     };
     table.read()
 }
@@ -167,11 +163,14 @@ pub(super) fn read(
 /// # Errors
 /// If the text is no table, or larger than a frame; with the kind [`ReadErrorKind::UnknownFormat`] if it has no numbers.
 pub fn read_rows(mut text: &[u8], consumer: &mut RecordingSink<'_>) -> Result<(), ReadError> {
-    let mut state = ReadState::default();
+    let (state, options) = (&mut ReadState::default(), &ReadOptions::default());
     let mut table = Table {
         lines: TextLines::new(&mut text as &mut dyn BufRead),
-        options: &ReadOptions::default(),
-        sink: &mut Sink::new(consumer, &mut state),
+        sink: &mut Sink {
+            consumer,
+            state,
+            options,
+        },
         is_one: true,
         is_inside: false,
     };
@@ -183,7 +182,6 @@ pub fn read_rows(mut text: &[u8], consumer: &mut RecordingSink<'_>) -> Result<()
 
 struct Table<'a, 'b> {
     lines: TextLines<&'a mut dyn BufRead>,
-    options: &'a ReadOptions,
     sink: &'a mut Sink<'b>,
     /// Whether the whole table is a single frame.
     is_one: bool,
@@ -232,7 +230,7 @@ impl<'a> Line<'a> {
 impl Table<'_, '_> {
     fn read(&mut self) -> Result<(), Stop> {
         // What was joined anywhere begins with the rest of a line.
-        if self.options.is_joined {
+        if self.sink.options.is_joined {
             self.advance()?;
         }
         let layout = match self.earlier()? {
@@ -248,7 +246,7 @@ impl Table<'_, '_> {
 
     /// Reads the next line; one that is too long is a wrong frame.
     fn advance(&mut self) -> Result<bool, Stop> {
-        self.sink.advance(&mut self.lines, self.options)
+        self.sink.advance(&mut self.lines)
     }
 
     /// The layout before an interruption, if one of the next lines continues it: the first ones may be torn, or messages.
@@ -277,7 +275,7 @@ impl Table<'_, '_> {
     /// Finds out how the table is arranged; the lines of its numbers are read again. In a live stream, lines that do not
     /// fit are dropped until some do; None if it ends before that.
     fn layout(&mut self) -> Result<Option<TableLayout>, Stop> {
-        let is_live = self.options.leaves_out;
+        let is_live = self.sink.options.leaves_out;
         loop {
             let mut layout = None;
             let found = self.columns().and_then(|columns| match columns {
@@ -286,7 +284,7 @@ impl Table<'_, '_> {
             });
             match (found, layout) {
                 (Ok(true), Some(mut layout)) => {
-                    layout.is_parted |= layout.in_rows && self.options.is_joined;
+                    layout.is_parted |= layout.in_rows && self.sink.options.is_joined;
                     self.tell(&layout)?;
                     self.sink.state.clock.unit = layout.time_unit;
                     return Ok(Some(layout));
@@ -305,7 +303,7 @@ impl Table<'_, '_> {
     }
 
     fn drop_line(&mut self, error: ReadError) -> Result<(), Stop> {
-        self.sink.damage(self.options, error, self.lines.line())
+        self.sink.damage(error, self.lines.line())
     }
 
     /// Finds the header, if there is one, up to the first line of numbers.
@@ -362,7 +360,7 @@ impl Table<'_, '_> {
                     (names, at.map_or(number, |(at, _)| *at))
                 }
             };
-            let layout = TableLayout::new(separator, names, &found, self.options);
+            let layout = TableLayout::new(separator, names, &found, self.sink.options);
             return Ok(Some(layout.map_err(|error| error.in_line(at))?));
         }
         Ok(None)
@@ -371,7 +369,7 @@ impl Table<'_, '_> {
     /// Arranges the cells, with the first line of numbers, which is read again. Returns false if the lines before the next
     /// one do not fit it and were dropped.
     fn arranged(&mut self, layout: &mut TableLayout) -> Result<bool, Stop> {
-        let given = self.options.size;
+        let given = self.sink.options.size;
         let total: usize = layout.channels.iter().map(|channel| channel.cells).sum();
         let is_single = layout.channels.len() == 1;
         let is_row = |size: &FrameSize| is_single && usize::from(size.columns()) == total;
@@ -405,8 +403,14 @@ impl Table<'_, '_> {
     fn is_header(&self, fields: &[&[u8]], separator: Separator) -> bool {
         let chosen = |index: usize| {
             let number = Some(&Column::Number(index + 1));
-            self.options.label_column.as_ref() == number
-                || self.options.time_column.as_ref().map(|time| &time.column) == number
+            self.sink.options.label_column.as_ref() == number
+                || self
+                    .sink
+                    .options
+                    .time_column
+                    .as_ref()
+                    .map(|time| &time.column)
+                    == number
         };
         let (mut words, mut numbers, mut is_usual) = (0, Vec::new(), true);
         for (index, field) in fields.iter().enumerate() {
@@ -443,7 +447,7 @@ impl Table<'_, '_> {
     /// Reads lines until it is clear how they are arranged; they are read again. Returns false if the next line of a live
     /// stream has another number of fields than those before it, which are dropped.
     fn look_ahead(&mut self, layout: &mut TableLayout, cells: usize) -> Result<bool, Stop> {
-        let (is_live, is_named) = (self.options.leaves_out, layout.names.is_some());
+        let (is_live, is_named) = (self.sink.options.leaves_out, layout.names.is_some());
         let most = if is_live {
             MOST_LIVE_ROWS
         } else {
@@ -478,7 +482,7 @@ impl Table<'_, '_> {
                     return Err(above_table(held[0].0, expected, number, count).into());
                 }
                 self.sink
-                    .damage(self.options, wrong_count(number, count, expected), b"")?;
+                    .damage(wrong_count(number, count, expected), b"")?;
                 return Ok(false);
             }
             if is_break && std::mem::take(&mut self.is_inside) {

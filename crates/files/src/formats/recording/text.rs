@@ -84,7 +84,7 @@ pub(super) fn whole(value: f64) -> Option<i64> {
 
 /// The size limit of a line in bytes, more than a frame of 512 × 512 values takes; thus one line cannot fill all
 /// memory.
-pub(in crate::formats) const LONGEST_LINE: usize = 8 << 20;
+pub(crate) const LONGEST_LINE: usize = 8 << 20;
 
 /// The lines of a text, counted from 1, without their ends and without a byte order mark.
 #[derive(Debug)]
@@ -232,7 +232,7 @@ pub(super) fn text(bytes: &[u8]) -> String {
     }
 }
 
-pub(in crate::formats) enum Field {
+pub(crate) enum Field {
     Value(f64),
     /// No value: the cell does not exist.
     NoCell,
@@ -241,7 +241,7 @@ pub(in crate::formats) enum Field {
 
 impl Field {
     /// Returns the value of a cell, NaN if there is none; None if the field is anything else.
-    pub(in crate::formats) fn cell(self) -> Option<f64> {
+    pub(crate) fn cell(self) -> Option<f64> {
         match self {
             Self::Value(read_value) => Some(read_value),
             Self::NoCell => Some(f64::NAN),
@@ -298,7 +298,7 @@ pub(super) fn wrong_field(line: u64, column: usize, field: &[u8]) -> ReadError {
 }
 
 /// Returns true if the lines of a text end in CR alone, as on the first Macintosh computers.
-pub(in crate::formats) fn is_parted_by_cr(text: &[u8]) -> bool {
+pub(crate) fn is_parted_by_cr(text: &[u8]) -> bool {
     let ends_before = text.iter().rev().skip(1).any(|&byte| byte == b'\r');
     ends_before && !text.contains(&b'\n') && !text.contains(&0)
 }
@@ -320,7 +320,7 @@ pub(super) fn is_none(field: &[u8]) -> bool {
 
 /// Returns true if a line is skipped wherever it is: a comment, or the line in which spreadsheet programs name the
 /// separator, `sep=;`. A comment begins with `#`; `#N/A` is a cell.
-pub(in crate::formats) fn is_comment(line: &[u8]) -> bool {
+pub(crate) fn is_comment(line: &[u8]) -> bool {
     let line = line.trim_ascii();
     match line {
         [b'#', ..] => !line
@@ -347,7 +347,7 @@ fn named_separator(line: &[u8]) -> Option<u8> {
     (is_usual && marks.iter().all(|&byte| byte == mark)).then_some(mark)
 }
 
-pub(in crate::formats) fn unquoted(field: &[u8]) -> &[u8] {
+pub(crate) fn unquoted(field: &[u8]) -> &[u8] {
     let field = field.trim_ascii();
     let inner = field
         .strip_prefix(b"\"")
@@ -356,7 +356,7 @@ pub(in crate::formats) fn unquoted(field: &[u8]) -> &[u8] {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::formats) enum Separator {
+pub(crate) enum Separator {
     /// A byte; two in succession have an empty field between them.
     Byte(u8),
     /// Any number of blanks; there are no empty fields.
@@ -408,7 +408,7 @@ impl Separator {
 
     /// Returns the fields of a line, without blanks and quotes around them; an empty field at the end is left out, as
     /// are those between tabs at both ends.
-    pub(in crate::formats) fn fields(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    pub(crate) fn fields(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
         self.split_into_fields(self.without_ends(line))
     }
 
@@ -434,7 +434,7 @@ impl Separator {
     }
 
     /// Reads the content of a field. With semicolons or tabs as separators, a comma is the decimal sign.
-    pub(in crate::formats) fn value(self, field: &[u8]) -> Field {
+    pub(crate) fn value(self, field: &[u8]) -> Field {
         if is_none(field) {
             return Field::NoCell;
         }

@@ -120,7 +120,7 @@ pub(super) fn time_name(name: &str) -> Option<Option<TimeUnit>> {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::formats) enum Time {
+pub(crate) enum Time {
     Picoseconds(i128),
     Seconds(f64),
 }
@@ -189,7 +189,7 @@ fn picoseconds(field: &[u8], unit: TimeUnit) -> Option<i128> {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::formats) struct Moment {
+pub(crate) struct Moment {
     /// The seconds since 1970, or since midnight if there is no date.
     pub(super) seconds: f64,
     /// Whether the timestamp has a date; otherwise it starts again at midnight.
@@ -198,7 +198,7 @@ pub(in crate::formats) struct Moment {
 
 /// Reads a timestamp; None for anything else. Second 60, a leap second, counts as the first second of the next
 /// minute.
-pub(in crate::formats) fn read_moment(field: &[u8]) -> Option<Moment> {
+pub(crate) fn read_moment(field: &[u8]) -> Option<Moment> {
     let text = str::from_utf8(field).ok()?.trim();
     let (day, clock) = match text.split_once(['T', 't', ' ']) {
         Some((date, clock)) => (Some(iso_day(date)?), clock.trim_start()),
@@ -232,14 +232,14 @@ fn clock_parts(clock: &str) -> Option<(i32, i32, f64)> {
 
 /// Counts the midnights that clocks without a date pass: when the time falls by more than half a day.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::formats) struct Midnights {
+pub(crate) struct Midnights {
     days: u32,
     last: Option<f64>,
 }
 
 impl Midnights {
     /// Returns the seconds of the next timestamp.
-    pub(in crate::formats) fn seconds(&mut self, moment: Moment) -> f64 {
+    pub(crate) fn seconds(&mut self, moment: Moment) -> f64 {
         const DAY: f64 = 86_400.0;
         if moment.is_dated {
             return moment.seconds;
@@ -303,7 +303,7 @@ fn two_digits(text: &str, most: i32) -> Option<i32> {
 /// The clock of a recording or a stream. After a gap in a stream it passes to the next decoder, so that times
 /// continue from the same frame.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::formats) struct FrameClock {
+pub(crate) struct FrameClock {
     /// The unit of numbers; None if it is not named, until the size of the first number decides it.
     pub(super) unit: Option<TimeUnit>,
     start: Option<Time>,
@@ -331,17 +331,17 @@ impl FrameClock {
     }
 
     /// Returns the time of a timestamp. Must be called once for each timestamp, in their order.
-    pub(in crate::formats) fn moment(&mut self, moment: Moment) -> Time {
+    pub(crate) fn moment(&mut self, moment: Moment) -> Time {
         Time::Seconds(self.midnights.seconds(moment))
     }
 
     /// Returns the seconds from the first frame to a frame with this time.
-    pub(in crate::formats) fn since_first(&mut self, time: Time) -> f64 {
+    pub(crate) fn since_first(&mut self, time: Time) -> f64 {
         time.since(*self.start.get_or_insert(time))
     }
 
     /// Returns once a note about a unit that was derived from the size of a time, unless it is seconds.
-    pub(in crate::formats) fn take_note(&mut self) -> Option<RecordingNote> {
+    pub(crate) fn take_note(&mut self) -> Option<RecordingNote> {
         let unit = self.assumed.take()?;
         Some(RecordingNote::Oddity(format!(
             "the times have no unit and are taken as {} since 1970",

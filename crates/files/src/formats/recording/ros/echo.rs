@@ -32,7 +32,7 @@ const CUT: &str = "the echo leaves out values ('...'): run ros2 topic echo with 
 
 /// Whether a text is an echo: its first line that is no notice begins a message, or a list of numbers that `---` ends.
 /// In a stream that was joined anywhere, any line may.
-pub(in crate::formats::recording) fn sniff(text: &[u8], options: &ReadOptions) -> bool {
+pub(crate) fn sniff(text: &[u8], options: &ReadOptions) -> bool {
     let lines = || {
         let lines = text
             .split(|&byte| byte == b'\n')
@@ -181,19 +181,15 @@ impl Message {
 }
 
 /// Reads a recording or a stream. A message that is wrong anywhere is read up to its end: the next one may be right.
-pub(in crate::formats::recording) fn read(
-    input: &mut dyn BufRead,
-    options: &ReadOptions,
-    sink: &mut Sink<'_>,
-) -> Result<(), Stop> {
+pub(crate) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), Stop> {
     let mut lines = TextLines::new(input);
     let mut message = Message::default();
     let mut frame = Frame::default();
     let mut before = None;
     // A stream may be joined inside a message.
-    let mut skipping = options.is_joined;
+    let mut skipping = sink.options.is_joined;
     loop {
-        let more = sink.advance(&mut lines, options)?;
+        let more = sink.advance(&mut lines)?;
         let number = lines.number() + u64::from(!more);
         let line = lines.line().trim_ascii();
         skipping &= !line.starts_with(b"array(");
@@ -216,7 +212,7 @@ pub(in crate::formats::recording) fn read(
             let read = match whole.error.clone() {
                 Some(error) => Err(error),
                 None if is_torn => Err(in_line(number, torn)),
-                None => whole.size(options.size, before, number),
+                None => whole.size(sink.options.size, before, number),
             };
             match read {
                 Ok(size) => {
@@ -231,7 +227,7 @@ pub(in crate::formats::recording) fn read(
                 Err(error) if error.kind == crate::error::ReadErrorKind::Unsized => {
                     return Err(error.into());
                 }
-                Err(error) => sink.damage(options, error, lines.line())?,
+                Err(error) => sink.damage(error, lines.line())?,
             }
         }
         skipping = false;

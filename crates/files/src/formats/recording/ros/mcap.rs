@@ -30,7 +30,7 @@ use taxel_core::parameter::number::counted;
 use crate::error::ReadError;
 use crate::formats::job::too_large;
 use crate::formats::numpy::Number;
-use crate::formats::recording::event::{ChannelInfo, LONGEST_NAME, ReadOptions, Sink, Stop};
+use crate::formats::recording::event::{ChannelInfo, LONGEST_NAME, Sink, Stop};
 use crate::formats::recording::ros::records::{McapRecord, each_record};
 use crate::formats::recording::size::{arranged, changed, frame_size, matrix_size};
 use crate::formats::recording::time;
@@ -40,7 +40,6 @@ const MOST_TOPICS: usize = 4096;
 
 /// The state of the reader: the names in the records so far, and the frame that is being filled.
 struct McapState<'a, 'b> {
-    options: &'a ReadOptions,
     /// The schemas so far, by number; None for a schema whose messages have no frames.
     schemas: HashMap<u16, Option<MessageKind>>,
     /// The topics whose messages have frames, by number: the name, and the kind of message.
@@ -54,13 +53,8 @@ struct McapState<'a, 'b> {
     sink: &'a mut Sink<'b>,
 }
 
-pub(in crate::formats::recording) fn read(
-    input: &mut dyn Read,
-    options: &ReadOptions,
-    sink: &mut Sink<'_>,
-) -> Result<(), Stop> {
+pub(crate) fn read(input: &mut dyn Read, sink: &mut Sink<'_>) -> Result<(), Stop> {
     let mut state = McapState {
-        options,
         schemas: HashMap::new(),
         topics: HashMap::new(),
         sizes: Vec::new(),
@@ -152,7 +146,7 @@ impl McapState<'_, '_> {
                     return Ok(None);
                 };
                 let stated = matrix_size(&sizes);
-                let size = arranged(self.values.len(), stated, self.options.size);
+                let size = arranged(self.values.len(), stated, self.sink.options.size);
                 self.give(topic, size)?;
             }
             MessageKind::Image => match cdr.image(&mut self.values) {
@@ -182,7 +176,11 @@ impl McapState<'_, '_> {
     fn give(&mut self, name: &str, size: Option<FrameSize>) -> Result<(), Stop> {
         let found = self.values.len();
         // Rows and columns that are given for one channel need not fit the others.
-        let named = self.options.size.filter(|asked| asked.cells() == found);
+        let named = self
+            .sink
+            .options
+            .size
+            .filter(|asked| asked.cells() == found);
         let size = size.or(named);
         check_name(name)?;
         let start = *self.start.get_or_insert(self.time);

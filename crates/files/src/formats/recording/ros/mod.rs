@@ -12,4 +12,4 @@ mod records;
 
 pub(super) mod mcap;
 
-pub(in crate::formats) mod echo;
+pub(crate) mod echo;

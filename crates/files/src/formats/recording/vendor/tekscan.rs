@@ -115,10 +115,7 @@ fn spacing(value: &str) -> Option<f64> {
     LengthUnit::of_name(unit.trim())?.pitch_in_mm(length)
 }
 
-pub(in crate::formats::recording) fn read(
-    input: &mut dyn BufRead,
-    sink: &mut Sink<'_>,
-) -> Result<(), Stop> {
+pub(crate) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), Stop> {
     let mut lines = TextLines::new(input);
     let (size, info) = header(&mut lines)?;
     let channel = sink.channel(None, || info.clone())?;

@@ -69,10 +69,7 @@ struct XsensorState {
     pitches: [Option<f64>; 2],
 }
 
-pub(in crate::formats::recording) fn read(
-    input: &mut dyn BufRead,
-    sink: &mut Sink<'_>,
-) -> Result<(), Stop> {
+pub(crate) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), Stop> {
     let mut lines = TextLines::new(input);
     let mut state = XsensorState::default();
     let mut frame = Frame::default();
@@ -130,7 +127,7 @@ fn pair(line: &[u8]) -> (String, String) {
 }
 
 /// Whether a line has one of the keys that the first lines of an export have: `FRAME`, and then `SENSELS`.
-pub(in crate::formats::recording) fn has_key(line: &[u8], key: &str) -> bool {
+pub(crate) fn has_key(line: &[u8], key: &str) -> bool {
     line.len() < 1 << 12 && pair(line).0 == key
 }
 
