@@ -31,7 +31,7 @@ use crate::error::ReadError;
 use crate::formats::job::too_large;
 use crate::formats::numpy::Number;
 use crate::formats::recording::event::{ChannelInfo, LONGEST_NAME, Sink, Stop};
-use crate::formats::recording::ros::records::{McapRecord, each_record};
+use crate::formats::recording::ros::records::{CHANNEL, LARGE_MESSAGE, SCHEMA, each_record};
 use crate::formats::recording::size::{arranged, changed, frame_size, matrix_size};
 use crate::formats::recording::time;
 
@@ -64,13 +64,21 @@ pub(crate) fn read(input: &mut dyn Read, sink: &mut Sink<'_>) -> Result<(), Stop
         frame: Frame::default(),
         sink,
     };
-    each_record(input, &mut |record| state.record(&record))?;
+    each_record(input, &mut |kind, record| state.record(kind, record))?;
     if state.start.is_none() {
         let message = "no messages with frames, expected std_msgs/*MultiArray, sensor_msgs/Image or \
                        tactile_msgs/TactileState";
         return Err(ReadError::new(message).into());
     }
     Ok(())
+}
+
+/// Splits off a text that follows its length; returns it and the rest.
+fn text(bytes: &[u8]) -> Option<(&str, &[u8])> {
+    let (length, rest) = bytes.split_first_chunk::<4>()?;
+    let length = usize::try_from(u32::from_le_bytes(*length)).ok()?;
+    let (text, rest) = rest.split_at_checked(length)?;
+    Some((str::from_utf8(text).ok()?, rest))
 }
 
 /// Refuses a name that is too long: compressed, thousands of names of many megabytes each take little space in a
@@ -87,18 +95,23 @@ fn check_name(name: &str) -> Result<(), ReadError> {
 impl McapState<'_, '_> {
     /// Takes a record. A number that was named before keeps its meaning: the summary at the end repeats schemas and
     /// channels.
-    fn record(&mut self, record: &McapRecord<'_>) -> Result<(), Stop> {
-        match *record {
-            McapRecord::Schema { id, name } => {
+    fn record(&mut self, kind: u8, record: &[u8]) -> Result<(), Stop> {
+        let broken = || ReadError::new("a record is broken");
+        let (id, rest) = record.split_first_chunk().ok_or_else(broken)?;
+        let id = u16::from_le_bytes(*id);
+        match kind {
+            SCHEMA => {
+                let (name, _) = text(rest).ok_or_else(broken)?;
                 let kind = || MessageKind::of(name);
                 self.schemas.entry(id).or_insert_with(kind);
             }
-            McapRecord::Channel {
-                id,
-                schema,
-                topic,
-                encoding,
-            } => {
+            CHANNEL => {
+                let fields = || {
+                    let (schema, rest) = rest.split_first_chunk()?;
+                    let (topic, rest) = text(rest)?;
+                    Some((u16::from_le_bytes(*schema), topic, text(rest)?.0))
+                };
+                let (schema, topic, encoding) = fields().ok_or_else(broken)?;
                 let found = self.schemas.get(&schema).copied().flatten();
                 let known = self.topics.contains_key(&id);
                 if let Some(kind) = found.filter(|_| encoding == "cdr" && !known) {
@@ -110,19 +123,7 @@ impl McapState<'_, '_> {
                     self.topics.insert(id, (topic.into(), kind));
                 }
             }
-            McapRecord::Message {
-                channel,
-                time,
-                data,
-            } => {
-                if let Some((topic, kind)) = self.topics.get(&channel).cloned() {
-                    self.time = time;
-                    let read = self.message(&topic, kind, data)?;
-                    let message = || ReadError::new(format!("{topic}: a message is broken"));
-                    read.ok_or_else(message)?;
-                }
-            }
-            McapRecord::LargeMessage { channel } => match self.topics.get(&channel) {
+            LARGE_MESSAGE => match self.topics.get(&id) {
                 // An image of that size is not a frame.
                 None | Some((_, MessageKind::Image)) => {}
                 Some((topic, _)) => {
@@ -130,6 +131,15 @@ impl McapState<'_, '_> {
                     return Err(ReadError::new(message).into());
                 }
             },
+            _ => {
+                let (head, data) = rest.split_first_chunk::<20>().ok_or_else(broken)?;
+                if let Some((topic, kind)) = self.topics.get(&id).cloned() {
+                    self.time = head[4..12].try_into().map_or(0, u64::from_le_bytes);
+                    let read = self.message(&topic, kind, data)?;
+                    let message = || ReadError::new(format!("{topic}: a message is broken"));
+                    read.ok_or_else(message)?;
+                }
+            }
         }
         Ok(())
     }
@@ -318,12 +328,8 @@ impl<'a> CdrReader<'a> {
     }
 
     fn word(&mut self) -> Option<u32> {
-        let bytes: [u8; 4] = self.take(4, 4)?.try_into().ok()?;
-        Some(if self.big_endian {
-            u32::from_be_bytes(bytes)
-        } else {
-            u32::from_le_bytes(bytes)
-        })
+        let word = Number::U32.in_order(self.big_endian);
+        word.whole(self.take(4, 4)?)?.try_into().ok()
     }
 
     /// Reads the number of elements of a list, each of at least `least` bytes; None if they cannot fit.
