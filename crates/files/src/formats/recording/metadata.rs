@@ -13,7 +13,7 @@ use taxel_core::quote::shortened_message;
 use crate::error::ReadError;
 use crate::formats::job::{FrameRows, RuleRecord, matrix};
 use crate::formats::json;
-use crate::formats::recording::size::LengthUnit;
+use crate::formats::recording::size::pitch_in_mm;
 use crate::formats::recording::time::TimeUnit;
 
 const FORMAT: &str = "taxel-touch/1";
@@ -218,7 +218,7 @@ impl RecordingMetadata {
 
 /// Returns the pitch unless a side is out of range. JSON has no number for NaN, so it could not be read again.
 fn pitch(pitch_mm: Option<[f64; 2]>) -> Option<[f64; 2]> {
-    let [x, y] = pitch_mm?.map(|side| LengthUnit::Millimetres.pitch_in_mm(side));
+    let [x, y] = pitch_mm?.map(|side| pitch_in_mm(side, "mm"));
     Some([x?, y?])
 }
 

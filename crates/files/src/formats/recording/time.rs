@@ -18,17 +18,17 @@ use crate::formats::seconds::{since, to_nanoseconds};
 /// The longest time from one frame to the next, in seconds: more than 30 years.
 const LONGEST_STEP: f64 = 1e9;
 
-/// A unit of time; smaller units come first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+/// A unit of time; its number is how many of it a second has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeUnit {
     /// ns
-    Nanoseconds,
+    Nanoseconds = 1_000_000_000,
     /// us
-    Microseconds,
+    Microseconds = 1_000_000,
     /// ms
-    Milliseconds,
+    Milliseconds = 1_000,
     /// s
-    Seconds,
+    Seconds = 1,
 }
 
 impl TimeUnit {
@@ -52,24 +52,14 @@ impl TimeUnit {
         }
     }
 
-    fn picoseconds(self) -> u64 {
-        match self {
-            Self::Nanoseconds => 1_000,
-            Self::Microseconds => 1_000_000,
-            Self::Milliseconds => 1_000_000_000,
-            Self::Seconds => 1_000_000_000_000,
-        }
+    fn picoseconds(self) -> i128 {
+        1_000_000_000_000 / i128::from(self as u32)
     }
 
     /// Converts a number in this unit to seconds.
     pub(super) fn seconds(self, number: f64) -> f64 {
         // A quotient of whole numbers is rounded only once.
-        match self {
-            Self::Nanoseconds => number / 1e9,
-            Self::Microseconds => number / 1e6,
-            Self::Milliseconds => number / 1e3,
-            Self::Seconds => number,
-        }
+        number / f64::from(self as u32)
     }
 
     /// Converts the time from one frame to the next from this unit to seconds, rounded to the nanosecond. None unless
@@ -127,7 +117,7 @@ pub(crate) enum Time {
 
 impl Time {
     pub(super) fn of_whole(whole: i128, unit: TimeUnit) -> Self {
-        Self::Picoseconds(whole * i128::from(unit.picoseconds()))
+        Self::Picoseconds(whole * unit.picoseconds())
     }
 
     #[expect(clippy::cast_precision_loss, reason = "the nearest float")]
@@ -184,7 +174,7 @@ fn picoseconds(field: &[u8], unit: TimeUnit) -> Option<i128> {
         return None;
     }
     let parts = 10_i128.pow(decimals);
-    let number = (number * i128::from(unit.picoseconds()) + parts / 2) / parts;
+    let number = (number * unit.picoseconds() + parts / 2) / parts;
     Some(if negative { -number } else { number })
 }
 

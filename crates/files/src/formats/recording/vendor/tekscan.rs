@@ -33,7 +33,7 @@ use taxel_core::quote::shortened;
 use crate::error::ReadError;
 use crate::formats::recording::error::in_line;
 use crate::formats::recording::event::{ChannelInfo, RecordingNote, Sink, Stop};
-use crate::formats::recording::size::{LengthUnit, stated};
+use crate::formats::recording::size::{pitch_in_mm, stated};
 use crate::formats::recording::text::{
     self, Field, Separator, TextLines, decimal, is_blank, read_number, text, unpadded,
 };
@@ -112,7 +112,7 @@ fn spacing(value: &str) -> Option<f64> {
     let end = value.rfind(|sign: char| sign.is_ascii_digit())? + 1;
     let (length, unit) = value.split_at(end);
     let length = decimal(length.as_bytes()).cell()?;
-    LengthUnit::of_name(unit.trim())?.pitch_in_mm(length)
+    pitch_in_mm(length, unit.trim())
 }
 
 pub(crate) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), Stop> {

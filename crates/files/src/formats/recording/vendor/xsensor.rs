@@ -32,7 +32,7 @@ use taxel_core::parameter::number::counted;
 use crate::error::ReadError;
 use crate::formats::recording::error::in_line;
 use crate::formats::recording::event::{ChannelInfo, Sink, Stop};
-use crate::formats::recording::size::{LengthUnit, stated};
+use crate::formats::recording::size::{pitch_in_mm, stated};
 use crate::formats::recording::text::{self, Separator, TextLines, decimal, read_number, text};
 use crate::formats::recording::time::{FrameClock, Time, read_moment};
 
@@ -138,7 +138,7 @@ impl XsensorState {
         // The unit is part of the key: `SENSEL WIDTH (CM)`.
         let length = || {
             let unit = key.split_once('(')?.1.trim_end_matches(')');
-            LengthUnit::of_name(unit)?.pitch_in_mm(number_of()?)
+            pitch_in_mm(number_of()?, unit)
         };
         match key {
             "UNITS" => self.info.unit = Some(value.to_owned()),
