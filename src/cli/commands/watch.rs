@@ -214,7 +214,7 @@ fn recording(source: &FrameSource, request: &WatchRequest) -> Result<Option<Reco
 }
 
 fn unrecorded(error: &RecorderError) -> Failure {
-    let exists = matches!(error, RecorderError::Exists { .. });
+    let exists = matches!(error, RecorderError::Exists(_));
     Failure::new(error.to_string()).with_hint(if exists { "; --force replaces it" } else { "" })
 }
 

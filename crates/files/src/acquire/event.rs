@@ -13,7 +13,7 @@ use crate::formats::recording::{
 use crate::formats::value::{counted, decimal, grouped};
 
 /// The options of an acquisition: how a source is read.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct AcquireOptions {
     /// The format of a stream; None to detect it. If it is given, a file is a stream, not a recording.
     pub format: Option<&'static Format>,

@@ -115,7 +115,11 @@ impl<'s, 'a, 'b> WaitingInput<'s, 'a, 'b> {
                     Err(error) => return Err(InputEnd::Lost(error)),
                 },
                 OpenSource::File { path, file, offset } => {
-                    let count = read_some(file, bytes).map_err(InputEnd::Lost)?;
+                    let count = match file.read(bytes) {
+                        // Without bytes, a read that a signal interrupted would count as the end of the file.
+                        Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+                        read => read.map_err(InputEnd::Lost)?,
+                    };
                     *offset += count as u64;
                     if count == 0 {
                         if let Some(how) = rewritten(path, file, *offset).map_err(InputEnd::Lost)? {
@@ -151,17 +155,6 @@ impl Read for WaitingInput<'_, '_, '_> {
             // What was sent may have been cut off anywhere, but a file ends where it ends.
             Some(InputEnd::Closed) if self.session.borrow().is_read_to_its_end() => Ok(0),
             _ => Err(ErrorKind::UnexpectedEof.into()),
-        }
-    }
-}
-
-/// Reads the bytes that are there. A read that a signal interrupted is repeated: without bytes, it would count as the
-/// end of the file.
-fn read_some(file: &mut impl Read, bytes: &mut [u8]) -> io::Result<usize> {
-    loop {
-        match file.read(bytes) {
-            Err(error) if error.kind() == ErrorKind::Interrupted => {}
-            read => return read,
         }
     }
 }

@@ -21,7 +21,7 @@ use taxel_core::index::index;
 
 use crate::ReadError;
 use crate::acquire::rate::FrameRate;
-use crate::formats::file::{has_ending, system_reason, write_reason};
+use crate::formats::file::{has_ending, system_reason};
 use crate::formats::numpy::{BEFORE_TEXT, header_of};
 use crate::formats::recording::RecordingMetadata;
 use crate::storage::{self, Existing, FileError, FileId, NewFile, check_writable};
@@ -129,14 +129,6 @@ impl FrameRecorder {
             rate: FrameRate::over(MOST_BURSTS),
             carries_times: false,
         })
-    }
-
-    /// Prepares a recording with the same metadata in another file.
-    ///
-    /// # Errors
-    /// Those of [`Self::create`].
-    pub fn elsewhere(&self, path: &Path) -> Result<Self, RecorderError> {
-        Self::create(path, self.existing, &self.metadata)
     }
 
     /// The number of frames that were recorded.
@@ -324,14 +316,13 @@ impl FrameRecorder {
     }
 
     fn failed(&self, error: io::Error) -> RecorderError {
-        let path = self.path.clone();
-        RecorderError::Io { path, error }
+        FileError::cannot("record", &self.path)(error).into()
     }
 
     /// Keeps the first failure for the metadata.
     fn noted<T>(&mut self, result: Result<T, RecorderError>) -> Result<T, RecorderError> {
         match &result {
-            Err(RecorderError::Io { error, .. }) => self.note_reason(&system_reason(error)),
+            Err(RecorderError::Io(failed)) => self.note_reason(&system_reason(&failed.error)),
             Err(error) => self.note_reason(&error.to_string()),
             Ok(_) => {}
         }
@@ -414,19 +405,11 @@ pub fn metadata_beside(path: &Path) -> Result<Option<RecordingMetadata>, ReadErr
 #[derive(Debug, thiserror::Error)]
 pub enum RecorderError {
     /// The system cannot write the file.
-    #[error("{}: cannot record: {}", path.display(), write_reason(error))]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// The error that the system reports.
-        error: io::Error,
-    },
+    #[error(transparent)]
+    Io(FileError),
     /// The file exists already.
-    #[error("{:?} already exists", path.to_string_lossy())]
-    Exists {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("{:?} already exists", _0.to_string_lossy())]
+    Exists(PathBuf),
     /// The file is not one to record in, in words that name it: its name ends otherwise, another program's file is
     /// beside it or has taken its name meanwhile, or it is the source.
     #[error("{0}")]
@@ -434,10 +417,12 @@ pub enum RecorderError {
 }
 
 impl From<FileError> for RecorderError {
-    fn from(FileError { path, error, .. }: FileError) -> Self {
-        match error.kind() {
-            io::ErrorKind::AlreadyExists => Self::Exists { path },
-            _ => Self::Io { path, error },
+    fn from(error: FileError) -> Self {
+        let doing = "record";
+        if error.exists() {
+            Self::Exists(error.path)
+        } else {
+            Self::Io(FileError { doing, ..error })
         }
     }
 }
@@ -553,7 +538,7 @@ mod tests {
             let mut recorder = begun(&path.with_extension("npy"));
             fs::write(&path, "mine").expect("written");
             let added = recorder.add(&Frame::default(), None);
-            assert!(matches!(added, Err(RecorderError::Exists { .. })));
+            assert!(matches!(added, Err(RecorderError::Exists(_))));
             assert_eq!(fs::read_to_string(&path).expect("read"), "mine");
             assert!(!folder.path().join(other).exists());
             assert_eq!(recorder.finish().expect("nothing was recorded"), 0);

@@ -63,7 +63,12 @@ impl FrameSource {
         match fs::metadata(&path).map(|metadata| metadata.file_type()) {
             Ok(kind) if unix::is_serial(kind) => Self::Serial(path),
             Ok(kind) if unix::is_fifo(kind) => Self::Fifo(path),
-            Err(_) if is_for_devices(&path) => Self::Serial(path),
+            // A device may appear there when it is plugged in.
+            Err(_)
+                if path.parent() == Some(Path::new("/dev")) || path.starts_with("/dev/serial") =>
+            {
+                Self::Serial(path)
+            }
             _ => Self::File(path),
         }
     }
@@ -160,11 +165,6 @@ impl FrameSource {
     pub(super) fn comes_back(&self) -> bool {
         matches!(self, Self::Tcp(_) | Self::Serial(_))
     }
-}
-
-/// Whether a device may appear at a path when it is plugged in.
-fn is_for_devices(path: &Path) -> bool {
-    path.parent() == Some(Path::new("/dev")) || path.starts_with("/dev/serial")
 }
 
 /// Refuses an address that is not a host with a port.

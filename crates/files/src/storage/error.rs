@@ -30,7 +30,7 @@ impl FileError {
 
     fn reason(&self) -> String {
         match self.doing {
-            "write" => write_reason(&self.error),
+            "write" | "record" => write_reason(&self.error),
             _ => system_reason(&self.error),
         }
     }

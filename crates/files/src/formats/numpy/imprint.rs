@@ -9,14 +9,14 @@ use taxel_core::sensor::MatrixSize;
 
 use crate::error::ReadError;
 use crate::formats::imprint_file::is_active;
-use crate::formats::numpy::{self, Elements, Header, Number};
+use crate::formats::numpy::{self, Header, Number};
 
 pub(in crate::formats) fn read(mut bytes: &[u8]) -> Result<Imprint, ReadError> {
     let header = Header::read(&mut bytes)?;
     let number = header.number().ok_or_else(|| {
-        let found = match &header.descr {
-            Elements::Code(code) => shortened(code),
-            Elements::Record(_) => "records".to_owned(),
+        let found = match header.code() {
+            "" => "records".to_owned(),
+            code => shortened(code),
         };
         ReadError::new(format!(
             "type {found:?}, expected bool, whole numbers or floats"

@@ -263,12 +263,17 @@ impl Header {
         serde_json::from_str(&as_json(text.trim())).map_err(|_| wrong())
     }
 
+    /// The code of its numbers; empty for records.
+    pub(crate) fn code(&self) -> &str {
+        match &self.descr {
+            Elements::Code(code) => code,
+            Elements::Record(_) => "",
+        }
+    }
+
     /// The type of its numbers; None if its elements are something else.
     pub(crate) fn number(&self) -> Option<Number> {
-        match &self.descr {
-            Elements::Code(code) => Number::of(code),
-            Elements::Record(_) => None,
-        }
+        Number::of(self.code())
     }
 
     /// The shape in words, shortened.

@@ -31,16 +31,12 @@ pub struct FrameAnswer<'a> {
 /// There is no `Deserialize`: an answer is only written.
 impl Serialize for FrameAnswer<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Self {
-            frame,
-            channel,
-            processed,
-        } = self;
+        let (frame, processed) = (self.frame, &self.processed);
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("frame", &frame.number)?;
         map.serialize_entry("label", &frame.label)?;
         map.serialize_entry("time", &frame.time.map(Shortest))?;
-        map.serialize_entry("channel", channel)?;
+        map.serialize_entry("channel", &self.channel)?;
         map.serialize_entry("sum", &Shortest(processed.sum))?;
         map.serialize_entry("max", &processed.max.map(Shortest))?;
         map.serialize_entry("force", &Shortest(processed.force))?;
@@ -80,18 +76,14 @@ impl FrameAnswer<'_> {
     /// Returns the frame as a line of CSV: the numbers of the JSON form, and the descriptors of the main region. A field
     /// is empty if the value does not exist; so are all descriptors without an active taxel.
     pub fn csv_line(&self) -> String {
-        let Self {
-            frame,
-            channel,
-            processed,
-        } = self;
+        let (frame, processed) = (self.frame, &self.processed);
         let optional = |value: Option<f64>| value.map_or_else(String::new, |own| own.to_string());
         let label = frame.label.as_ref().map(ToString::to_string);
         let mut fields = vec![
             frame.number.to_string(),
             label.unwrap_or_default(),
             optional(frame.time),
-            channel.unwrap_or_default().to_owned(),
+            self.channel.unwrap_or_default().to_owned(),
             processed.sum.to_string(),
             optional(processed.max),
             processed.force.to_string(),

@@ -84,7 +84,7 @@ pub(super) fn flexitac(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(
 }
 
 /// Appends at most `most` of the bytes that have come. Returns true at the end of the input.
-fn take_bytes(
+pub(super) fn take_bytes(
     input: &mut dyn BufRead,
     most: usize,
     bytes: &mut Vec<u8>,
@@ -277,46 +277,30 @@ impl MarkedFrames<'_, '_> {
     }
 }
 
-/// How frames end, and begin if they do not end each other.
-struct Framing {
-    open: Option<u8>,
-    close: u8,
-    /// The byte before the number of a cell that would otherwise open, close or escape, and these cells.
-    escape: Option<(u8, [u8; 3])>,
-}
+/// The bytes that open, escape and close a bracketed frame, and the cells that escapes with these numbers stand for.
+const OPEN: u8 = 0x5b;
+const ESCAPE: u8 = 0x5c;
+const CLOSE: u8 = 0x5d;
+const ESCAPED: [u8; 3] = [ESCAPE, OPEN, CLOSE];
 
-const ENDED: Framing = Framing {
-    open: None,
-    close: 0xff,
-    escape: None,
-};
+/// The byte that ends a frame without brackets.
+const END: u8 = 0xff;
 
-const BRACKETED: Framing = Framing {
-    open: Some(0x5b),
-    close: 0x5d,
-    escape: Some((0x5c, [0x5c, 0x5b, 0x5d])),
-};
-
-/// Returns how the frames of a stream of this many cells are framed, from its first bytes; None if more are needed. The
+/// Whether the frames of a stream of this many cells are in brackets, from its first bytes; None if more are needed. The
 /// bytes between two cells of `FF` in a bracketed stream may have the right number by chance.
-fn framing(
-    head: &[u8],
-    cells: usize,
-    options: &ReadOptions,
-    is_all: bool,
-) -> Option<&'static Framing> {
-    let whole = |framing: &'static Framing| {
-        let mut frame = SplitFrame::new(framing, cells, options);
+fn framing(head: &[u8], cells: usize, options: &ReadOptions, is_all: bool) -> Option<bool> {
+    let whole = |is_bracketed| {
+        let mut frame = SplitFrame::new(is_bracketed, cells, options);
         head.iter()
             .filter(|&&byte| matches!(frame.take(byte), Part::Whole(_)))
             .count()
     };
-    let (ended, bracketed) = (whole(&ENDED), whole(&BRACKETED));
+    let (ended, bracketed) = (whole(false), whole(true));
     let enough = if is_all { 1 } else { 2 };
     if bracketed >= enough && bracketed >= ended {
-        Some(&BRACKETED)
+        Some(true)
     } else if ended >= enough && (bracketed == 0 || ended > 4) {
-        Some(&ENDED)
+        Some(false)
     } else {
         None
     }
@@ -339,7 +323,7 @@ pub(super) fn matsense(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(
         let is_all = ended || bytes.len() >= most;
         match framing(&bytes, cells, options, is_all) {
             None if !is_all => ended = take_bytes(input, most, &mut bytes)?,
-            found => break found.unwrap_or(&ENDED),
+            found => break found.unwrap_or(false),
         }
     };
     let mut board = Board::new(size, sink)?;
@@ -372,8 +356,9 @@ enum Part {
 }
 
 /// A frame between an end and the next one.
+#[derive(Default)]
 struct SplitFrame {
-    framing: &'static Framing,
+    is_bracketed: bool,
     cells: usize,
     /// The cells of the frame so far, at most as many as it has; a wrong escape is none.
     values: Vec<u8>,
@@ -385,22 +370,19 @@ struct SplitFrame {
 }
 
 impl SplitFrame {
-    fn new(framing: &'static Framing, cells: usize, options: &ReadOptions) -> Self {
+    fn new(is_bracketed: bool, cells: usize, options: &ReadOptions) -> Self {
         Self {
-            framing,
+            is_bracketed,
             cells,
-            values: Vec::new(),
-            found: 0,
-            is_synced: false,
-            is_inside: framing.open.is_none() && !options.is_joined,
-            is_escaped: false,
+            is_inside: !is_bracketed && !options.is_joined,
+            ..Self::default()
         }
     }
 
     fn take(&mut self, byte: u8) -> Part {
-        let opens = self.framing.open == Some(byte);
-        if opens || byte == self.framing.close {
-            let begins = opens || self.framing.open.is_none();
+        let opens = self.is_bracketed && byte == OPEN;
+        if opens || byte == if self.is_bracketed { CLOSE } else { END } {
+            let begins = opens || !self.is_bracketed;
             let is_whole = mem::replace(&mut self.is_inside, begins)
                 && !self.is_escaped
                 && !opens
@@ -416,18 +398,16 @@ impl SplitFrame {
                 Part::More
             };
         }
-        let escape = self.framing.escape.filter(|_| self.is_inside);
-        let value = match escape {
-            Some((_, cells)) if mem::take(&mut self.is_escaped) => {
-                cells.get(usize::from(byte)).copied()
-            }
-            Some((mark, _)) if mark == byte => {
-                self.is_escaped = true;
-                return Part::More;
-            }
+        let value = if mem::take(&mut self.is_escaped) {
+            ESCAPED.get(usize::from(byte)).copied()
+        } else if self.is_bracketed && self.is_inside && byte == ESCAPE {
+            self.is_escaped = true;
+            return Part::More;
+        } else if !self.is_inside && b"\r\n".contains(&byte) {
             // A board may end its frames as lines.
-            _ if !self.is_inside && b"\r\n".contains(&byte) => return Part::More,
-            _ => Some(byte),
+            return Part::More;
+        } else {
+            Some(byte)
         };
         self.found += 1;
         if self.values.len() < self.cells {

@@ -15,9 +15,7 @@ pub(super) fn in_field(line: u64, column: usize, message: impl Into<String>) -> 
 }
 
 pub(super) fn known_formats() -> String {
-    let mut titles: Vec<&str> = FORMATS.iter().map(|format| format.title).collect();
-    titles.dedup();
-    titles.join(", ")
+    FORMATS.each_ref().map(|format| format.title).join(", ")
 }
 
 /// The error for what has none of the known formats.

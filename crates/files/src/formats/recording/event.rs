@@ -16,7 +16,7 @@ use crate::formats::recording::text::TextLines;
 use crate::formats::recording::time::{FrameClock, TimeUnit};
 
 /// Options for reading a recording or a stream.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default)]
 pub struct ReadOptions {
     /// The size of a frame, for what does not state it.
     pub size: Option<FrameSize>,

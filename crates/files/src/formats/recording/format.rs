@@ -1,6 +1,5 @@
 //! The formats of recordings and streams, a row each, and which of them some content has.
 
-use std::fmt;
 use std::io::{BufRead, BufReader, Read, Seek};
 
 use taxel_core::parameter::UnknownName;
@@ -23,6 +22,7 @@ pub(super) const LOOKED_AT: usize = 1 << 16;
 const CHUNK: usize = 1 << 16;
 
 /// A format of recordings, or of streams: all that the rest of the program knows of it.
+#[derive(Debug)]
 pub struct Format {
     /// The name in answers.
     pub name: &'static str,
@@ -37,6 +37,7 @@ pub struct Format {
 }
 
 /// How a format is read.
+#[derive(Debug)]
 pub(super) enum Reader {
     /// Reads bytes as they come: recordings and streams alike. `fill_buf` waits for more; empty is the end, and
     /// [`io::ErrorKind::UnexpectedEof`] an end that may have cut a line.
@@ -125,20 +126,6 @@ pub static FORMATS: [Format; 10] = [
         read: Reader::Bytes(table::read),
     },
 ];
-
-impl fmt::Debug for Format {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name)
-    }
-}
-
-impl PartialEq for Format {
-    fn eq(&self, other: &Self) -> bool {
-        self.name == other.name
-    }
-}
-
-impl Eq for Format {}
 
 impl Format {
     /// Whether a content begins like this.

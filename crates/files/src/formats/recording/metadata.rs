@@ -4,7 +4,6 @@
 use std::fmt::Display;
 use std::num::NonZeroU32;
 
-use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 use taxel_core::frame::{Rule, RuleOrigin, SetRule, Tare};
 use taxel_core::matrix::Matrix;
@@ -14,7 +13,7 @@ use crate::error::ReadError;
 use crate::formats::job::{FrameRows, RuleRecord, matrix};
 use crate::formats::json;
 use crate::formats::recording::size::pitch_in_mm;
-use crate::formats::recording::time::TimeUnit;
+use crate::formats::recording::time::step;
 
 const FORMAT: &str = "taxel-touch/1";
 
@@ -79,31 +78,31 @@ pub struct RecordingMetadata {
 }
 
 /// The text of the file, key by key.
-#[derive(Default, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields, expecting = "an object")]
-struct Described {
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object")]
+struct Described<Rule> {
     format: String,
+    #[serde(default)]
     source: String,
     unit: Option<String>,
     pitch_mm: Option<[f64; 2]>,
     seconds_per_frame: Option<f64>,
-    rule: Option<DescribedRule>,
+    rule: Option<Rule>,
     tare_frames: Option<u64>,
     tare: Option<FrameRows>,
     tare_spread: Option<FrameRows>,
     tare_step: Option<f64>,
+    #[serde(default)]
     marks: Vec<FrameMark>,
     ended: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     ended_by: Option<String>,
 }
 
-/// A rule. It is written with its origin, but once it is read, its origin is the file.
+/// A rule as it is read. It is written with its origin, but then its origin is the file.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum DescribedRule {
-    #[serde(skip)]
-    Set(SetRule),
     Noise {
         noise: f64,
         least: Option<NonZeroU32>,
@@ -111,19 +110,9 @@ enum DescribedRule {
     Other(RuleRecord),
 }
 
-impl Serialize for DescribedRule {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::Set(rule) => rule.serialize(serializer),
-            _ => serializer.serialize_none(),
-        }
-    }
-}
-
 impl DescribedRule {
     fn set(self) -> Result<SetRule, ReadError> {
         let (rule, least) = match self {
-            Self::Set(rule) => return Ok(rule),
             Self::Noise { noise, least } => {
                 (Rule::noise(noise).map_err(|error| wrong(&error))?, least)
             }
@@ -170,7 +159,7 @@ impl RecordingMetadata {
         })
     }
 
-    fn of(described: Described) -> Result<Self, ReadError> {
+    fn of(described: Described<DescribedRule>) -> Result<Self, ReadError> {
         let in_key = |key| move |error: String| wrong(&error).of_key(key);
         let rule = described.rule.map(DescribedRule::set).transpose();
         let tare = described.tare.map(|rows| {
@@ -185,7 +174,7 @@ impl RecordingMetadata {
             source: shortened_message(&described.source),
             unit: described.unit.as_deref().map(shortened_message),
             pitch_mm: pitch(described.pitch_mm),
-            seconds_per_frame: step(described.seconds_per_frame),
+            seconds_per_frame: described.seconds_per_frame.and_then(step),
             rule: rule.map_err(|error| error.of_key("rule"))?,
             tare: tare.transpose()?,
             marks: described.marks,
@@ -202,8 +191,8 @@ impl RecordingMetadata {
             source: self.source.clone(),
             unit: self.unit.clone(),
             pitch_mm: pitch(self.pitch_mm),
-            seconds_per_frame: step(self.seconds_per_frame),
-            rule: self.rule.map(DescribedRule::Set),
+            seconds_per_frame: self.seconds_per_frame.and_then(step),
+            rule: self.rule,
             tare_frames: tare.map(Tare::frames),
             tare: tare.map(|tare| rows(tare.baseline())),
             tare_spread: tare.map(|tare| rows(tare.median_absolute_deviation())),
@@ -220,11 +209,6 @@ impl RecordingMetadata {
 fn pitch(pitch_mm: Option<[f64; 2]>) -> Option<[f64; 2]> {
     let [x, y] = pitch_mm?.map(|side| pitch_in_mm(side, "mm"));
     Some([x?, y?])
-}
-
-/// Returns the time from one frame to the next unless it is out of range.
-fn step(seconds: Option<f64>) -> Option<f64> {
-    TimeUnit::Seconds.step_in_seconds(seconds?)
 }
 
 fn rows(matrix: &Matrix<f64>) -> FrameRows {

@@ -370,16 +370,6 @@ struct ArchiveArray {
     header: Header,
 }
 
-impl ArchiveArray {
-    /// The code of its numbers; empty for records.
-    fn code(&self) -> &str {
-        match &self.header.descr {
-            Elements::Code(code) => code,
-            Elements::Record(_) => "",
-        }
-    }
-}
-
 pub(super) fn read_archive(input: impl Read + Seek, sink: &mut Sink<'_>) -> Result<(), Stop> {
     let archive = &mut ZipArchive::new(input).map_err(refused)?;
     let arrays = arrays(archive)?;
@@ -432,7 +422,7 @@ fn arrays<R: Read + Seek>(archive: &mut ZipArchive<R>) -> Result<Vec<ArchiveArra
     }
     if arrays
         .first()
-        .is_some_and(|array| array.name == "header" && array.code() == "|u1")
+        .is_some_and(|array| array.name == "header" && array.header.code() == "|u1")
     {
         return Err(foreign("an atlas or a model of taxel"));
     }
@@ -444,7 +434,8 @@ fn channels<'a>(
     arrays: &'a [ArchiveArray],
     asked: Option<FrameSize>,
 ) -> Result<Vec<(&'a ArchiveArray, Layout)>, ReadError> {
-    let may_be = |array: &&ArchiveArray| array.header.shape.len() > 1 && !array.code().is_empty();
+    let may_be =
+        |array: &&ArchiveArray| array.header.shape.len() > 1 && !array.header.code().is_empty();
     let arrays: Vec<_> = arrays.iter().filter(may_be).collect();
     let message = "no array of two or three axes, expected frames, rows and columns";
     let mut error = ReadError::new(message);
@@ -482,7 +473,8 @@ fn times<R: Read + Seek>(
             .then_some((false, array, None)),
     });
     let found = named.max_by_key(|(is_time, array, _)| (*is_time, Reverse(array.index)));
-    let time = found.and_then(|(_, array, unit)| Some((array, TimeType::of(array.code(), unit)?)));
+    let time =
+        found.and_then(|(_, array, unit)| Some((array, TimeType::of(array.header.code(), unit)?)));
     let Some((array, time)) = time.filter(|_| frames <= MOST_TIMES) else {
         return Ok((Vec::new(), None));
     };

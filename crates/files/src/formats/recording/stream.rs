@@ -1,8 +1,9 @@
 //! A live stream of frames, read by the readers of recordings behind an input that waits.
 
-use std::io::{self, BufRead, Read};
+use std::io::{BufRead, Read};
 
 use crate::error::{ReadError, ReadErrorKind};
+use crate::formats::recording::boards::take_bytes;
 use crate::formats::recording::event::{
     ReadOptions, ReadState, RecordingEvent, RecordingSink, Sink, Stop,
 };
@@ -106,7 +107,7 @@ impl StreamReader {
         self.is_joined = false;
     }
 
-    /// Reads until the input ends, or the consumer wants no more. An end by [`io::ErrorKind::UnexpectedEof`] may have cut
+    /// Reads until the input ends, or the consumer wants no more. An end by [`ErrorKind::UnexpectedEof`](std::io::ErrorKind) may have cut
     /// a line, which is then dropped; any other is that of the last line. At its end, the input must go on to end so.
     ///
     /// # Errors
@@ -139,20 +140,18 @@ impl StreamReader {
         let mut input = head.as_slice().chain(input);
         let read = match format.read {
             Reader::Bytes(read) if format.stream.is_some() => read(&mut input, sink),
-            _ => return Err(not_a_stream(format)),
+            _ => {
+                let name = format.name;
+                return Err(ReadError::new(format!(
+                    "a recording ({name}), not a stream; save it to a file, then type taxel frames FILE"
+                )));
+            }
         };
         match read {
             Ok(()) | Err(Stop::Enough) => Ok(()),
             Err(Stop::Failed(error)) => Err(error),
         }
     }
-}
-
-fn not_a_stream(format: &Format) -> ReadError {
-    let name = format.name;
-    ReadError::new(format!(
-        "a recording ({name}), not a stream; save it to a file, then type taxel frames FILE"
-    ))
 }
 
 /// Takes the first bytes of a stream until they show its format, which does not depend on the pieces in which they come;
@@ -173,16 +172,8 @@ fn look(
         goes_on.or_else(|| format_of_head(head, options, is_all))
     };
     loop {
-        let found = match input.fill_buf() {
-            Ok(found) => found,
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
-            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => &[],
-            Err(error) => return Err(error.into()),
-        };
-        let count = found.len();
-        head.extend_from_slice(found);
-        input.consume(count);
-        let is_all = count == 0 || head.len() >= LOOKED_AT;
+        let has_ended = take_bytes(input, usize::MAX, head)?;
+        let is_all = has_ended || head.len() >= LOOKED_AT;
         loop {
             let rest = &head[seen..head.len().min(LOOKED_AT)];
             // The same steps however far the pieces reach. Markers decide at once.
@@ -211,7 +202,7 @@ fn look(
             let is_binary = str::from_utf8(head).is_err_and(|error| error.error_len().is_some());
             return match format_of(head, true) {
                 Some(format) => Ok(Some(format)),
-                None if head.is_empty() || options.is_joined && count == 0 => Ok(None),
+                None if head.is_empty() || options.is_joined && has_ended => Ok(None),
                 None if options.size.is_none() && is_binary => {
                     let message = "bytes of no known format: those of boards need --rows and --columns, text needs --format";
                     Err(ReadError::new(message).of_kind(ReadErrorKind::Unsized))

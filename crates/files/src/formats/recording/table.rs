@@ -93,7 +93,7 @@ pub(super) fn sniff(head: &[u8], options: &ReadOptions, is_all: bool) -> bool {
         }
         let separator = Separator::of(line);
         let (mut fields, mut numbers, mut filled) = (0, 0, 0);
-        for field in separator.fields(line) {
+        for field in separator.fields(line, 0) {
             let is_number = separator.is_numeric(field);
             fields += 1;
             numbers += usize::from(is_number);
@@ -214,7 +214,7 @@ impl<'a> Line<'a> {
             return Self::Comment;
         }
         let (mut found, mut numbers) = (0, 0);
-        for field in separator.fields_of(fields, count) {
+        for field in separator.fields(fields, count) {
             let is_number = separator.is_numeric(field) && !field.is_empty();
             numbers += usize::from(is_number && (found == 0 || separator != Separator::Spaces));
             found += 1;
@@ -324,10 +324,10 @@ impl Table<'_, '_> {
             }
             let separator = Separator::of(fields);
             let expected = match &above {
-                Some((_, names)) => separator.fields(bare(names).1).count(),
+                Some((_, names)) => separator.fields(bare(names).1, 0).count(),
                 None => 0,
             };
-            let found = separator.fields_of(fields, expected);
+            let found = separator.fields(fields, expected);
             let found: Vec<&[u8]> = found.take(MOST_FIELDS + 1).collect();
             if found.len() > MOST_FIELDS {
                 let message =
@@ -343,7 +343,7 @@ impl Table<'_, '_> {
             }
             let (names, at) = match &above {
                 Some((at, names)) if expected == found.len() => {
-                    let names = separator.fields_of(bare(names).1, expected);
+                    let names = separator.fields(bare(names).1, expected);
                     (Some(names.map(text).collect()), *at)
                 }
                 // A line of text may stand above the first frame, but not a list of words.
@@ -820,7 +820,7 @@ impl TableLayout {
     /// The fields of a line. If they have names, the last one may be empty; otherwise a separator at the end is none.
     fn fields<'a>(&self, line: &'a [u8]) -> impl Iterator<Item = &'a [u8]> + use<'a> {
         let expected = self.names.as_ref().map_or(0, Vec::len);
-        self.separator.fields_of(line, expected)
+        self.separator.fields(line, expected)
     }
 
     /// Takes all cells as those of one channel.
@@ -956,7 +956,7 @@ fn names_in_comment(comment: &[u8], separator: Separator, count: usize) -> Optio
         comment = rest;
     }
     let separators = [separator, Separator::of(comment)].into_iter();
-    let names = separators.map(|own| own.fields_of(comment, count).map(text).collect());
+    let names = separators.map(|own| own.fields(comment, count).map(text).collect());
     names.into_iter().find(|names: &Vec<String>| {
         let cells = names.iter().filter(|name| CellName::of(name).is_some());
         let cells = cells.count();

@@ -20,45 +20,42 @@ use crate::error::ReadError;
 use crate::formats::file::BYTE_ORDER_MARK;
 use crate::formats::job::too_large;
 
-/// Powers of ten that are exact in f64.
-const POWERS: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
-    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
-];
-
 /// The most decimal digits of which every number fits into the 53 bits of a float.
-const EXACT_DIGITS: usize = 15;
+const EXACT_DIGITS: u32 = 15;
+
+/// The digits of a decimal without an exponent as a whole number, whether it is negative, and how many of its digits are
+/// decimals, after one of the `points`. None for anything else, and for more digits than `most`.
+pub(super) fn digits(text: &[u8], points: &[u8], most: u32) -> Option<(u128, bool, u32)> {
+    let (negative, digits) = match text {
+        [b'-', rest @ ..] => (true, rest),
+        [b'+', rest @ ..] => (false, rest),
+        _ => (false, text),
+    };
+    let (mut whole, mut count, mut decimals, mut has_point) = (0_u128, 0, 0, false);
+    for &byte in digits {
+        match byte {
+            b'0'..=b'9' if count < most => {
+                whole = whole * 10 + u128::from(byte - b'0');
+                count += 1;
+                decimals += u32::from(has_point);
+            }
+            _ if !has_point && points.contains(&byte) => has_point = true,
+            _ => return None,
+        }
+    }
+    (count > 0).then_some((whole, negative, decimals))
+}
 
 /// Reads a finite decimal without blanks around it, such as `12`, `-0.5` or `+1e-3`; None for anything else.
 ///
 /// A number of at most 15 digits is the quotient of two exact floats, and thus rounded correctly; other numbers are
 /// left to the standard library.
 pub(super) fn read_number(text: &[u8]) -> Option<f64> {
-    let (negative, digits) = match text {
-        [b'-', rest @ ..] => (true, rest),
-        [b'+', rest @ ..] => (false, rest),
-        _ => (false, text),
+    let Some((whole, negative, decimals)) = digits(text, b".", EXACT_DIGITS) else {
+        return slow(text);
     };
-    if digits.len() > EXACT_DIGITS + 1 {
-        return slow(text);
-    }
-    let (mut whole, mut count, mut decimals, mut point) = (0_u64, 0_usize, 0_usize, false);
-    for &byte in digits {
-        match byte {
-            b'0'..=b'9' => {
-                whole = whole * 10 + u64::from(byte - b'0');
-                count += 1;
-                decimals += usize::from(point);
-            }
-            b'.' if !point => point = true,
-            _ => return slow(text),
-        }
-    }
-    if count == 0 || count > EXACT_DIGITS {
-        return slow(text);
-    }
     #[expect(clippy::cast_precision_loss, reason = "15 digits are exact")]
-    let value = whole as f64 / POWERS[decimals];
+    let value = whole as u64 as f64 / 10_u64.pow(decimals) as f64;
     Some(if negative { -value } else { value })
 }
 
@@ -398,22 +395,12 @@ impl Separator {
         line.split(is_end).map(unquoted)
     }
 
-    /// Returns the fields of a line like [`Self::fields`]. If the line has the `expected` number of fields only when
-    /// the empty ones at its ends count, they count.
-    pub(super) fn fields_of(self, line: &[u8], expected: usize) -> impl Iterator<Item = &[u8]> {
+    /// Returns the fields of a line, without blanks and quotes around them. An empty field at the end is left out, as are
+    /// those between tabs at both ends, unless the line has the `expected` number of fields only with them.
+    pub(crate) fn fields(self, line: &[u8], expected: usize) -> impl Iterator<Item = &[u8]> {
         let (whole, ended) = (self.without_blanks(line), self.without_ends(line));
         let is_whole = whole.len() > ended.len() && self.split(whole).count() == expected;
-        self.split_into_fields(if is_whole { whole } else { ended })
-    }
-
-    /// Returns the fields of a line, without blanks and quotes around them; an empty field at the end is left out, as
-    /// are those between tabs at both ends.
-    pub(crate) fn fields(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
-        self.split_into_fields(self.without_ends(line))
-    }
-
-    fn split_into_fields(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
-        let fields = self.split(line);
+        let fields = self.split(if is_whole { whole } else { ended });
         fields.filter(move |field| self != Self::Spaces || !field.is_empty())
     }
 
@@ -450,19 +437,15 @@ impl Separator {
     }
 }
 
-/// Reads a number whose decimal sign may be a comma; with a comma, it has at most 32 characters.
+/// Reads a number whose decimal sign may be a comma.
 pub(super) fn decimal(field: &[u8]) -> Field {
     if !field.contains(&b',') {
         return read_value(field);
     }
-    let mut pointed = [0; 32];
-    let Some(pointed) = pointed.get_mut(..field.len()) else {
-        return Field::Wrong;
-    };
-    for (slot, &byte) in pointed.iter_mut().zip(field) {
-        *slot = if byte == b',' { b'.' } else { byte };
-    }
-    read_value(pointed)
+    let pointed = field
+        .iter()
+        .map(|&byte| if byte == b',' { b'.' } else { byte });
+    read_value(&pointed.collect::<Vec<u8>>())
 }
 
 #[cfg(test)]
@@ -580,7 +563,7 @@ mod tests {
 
     fn fields(line: &str) -> (Separator, Vec<&str>) {
         let separator = Separator::of(line.as_bytes());
-        let fields = separator.fields(line.as_bytes());
+        let fields = separator.fields(line.as_bytes(), 0);
         let fields = fields.map(|field| str::from_utf8(field).expect("UTF-8"));
         (separator, fields.collect())
     }
@@ -603,10 +586,10 @@ mod tests {
 
     #[test]
     fn an_empty_field_at_the_end_counts_if_it_is_expected() {
-        let count = |expected| Separator::Byte(b',').fields_of(b"1,2,", expected).count();
+        let count = |expected| Separator::Byte(b',').fields(b"1,2,", expected).count();
         assert_eq!([2, 3, 4].map(count), [2, 3, 2]);
         let count = |expected| {
-            let fields = Separator::Byte(b'\t').fields_of(b" \t1\t\r", expected);
+            let fields = Separator::Byte(b'\t').fields(b" \t1\t\r", expected);
             fields.count()
         };
         assert_eq!([1, 2, 3, 4].map(count), [1, 1, 3, 1]);

@@ -18,6 +18,13 @@ use crate::formats::seconds::{since, to_nanoseconds};
 /// The longest time from one frame to the next, in seconds: more than 30 years.
 const LONGEST_STEP: f64 = 1e9;
 
+/// Rounds the seconds from one frame to the next to the nanosecond. None unless the result is above 0 and at most
+/// [`LONGEST_STEP`].
+pub(super) fn step(seconds: f64) -> Option<f64> {
+    let seconds = to_nanoseconds(seconds);
+    (seconds > 0.0 && seconds <= LONGEST_STEP).then_some(seconds)
+}
+
 /// A unit of time; its number is how many of it a second has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeUnit {
@@ -60,13 +67,6 @@ impl TimeUnit {
     pub(super) fn seconds(self, number: f64) -> f64 {
         // A quotient of whole numbers is rounded only once.
         number / f64::from(self as u32)
-    }
-
-    /// Converts the time from one frame to the next from this unit to seconds, rounded to the nanosecond. None unless
-    /// that is above 0 and at most [`LONGEST_STEP`].
-    pub(super) fn step_in_seconds(self, number: f64) -> Option<f64> {
-        let seconds = to_nanoseconds(self.seconds(number));
-        (seconds > 0.0 && seconds <= LONGEST_STEP).then_some(seconds)
     }
 
     /// Guesses the unit of a time without one: milliseconds or smaller if that makes it a date between 2000 and 2100,
@@ -149,32 +149,9 @@ impl Time {
 
 /// Returns the picoseconds of a decimal number of up to 20 digits without an exponent, rounded to whole ones.
 fn picoseconds(field: &[u8], unit: TimeUnit) -> Option<i128> {
-    const MOST_DIGITS: u32 = 20;
-    let (negative, digits) = match field {
-        [b'-', digits @ ..] => (true, digits),
-        [b'+', digits @ ..] => (false, digits),
-        _ => (false, field),
-    };
-    let (mut number, mut count, mut decimals, mut point) = (0_i128, 0_u32, 0_u32, false);
-    for &byte in digits {
-        match byte {
-            b'0'..=b'9' => {
-                number = number * 10 + i128::from(byte - b'0');
-                count += 1;
-                decimals += u32::from(point);
-            }
-            b'.' | b',' if !point => point = true,
-            _ => return None,
-        }
-        if count > MOST_DIGITS {
-            return None;
-        }
-    }
-    if count == 0 {
-        return None;
-    }
+    let (whole, negative, decimals) = text::digits(field, b".,", 20)?;
     let parts = 10_i128.pow(decimals);
-    let number = (number * unit.picoseconds() + parts / 2) / parts;
+    let number = (whole.cast_signed() * unit.picoseconds() + parts / 2) / parts;
     Some(if negative { -number } else { number })
 }
 
@@ -218,26 +195,6 @@ fn clock_parts(clock: &str) -> Option<(i32, i32, f64)> {
         return None;
     };
     (is_number && seconds < 61.0).then_some((hours, minutes, seconds))
-}
-
-/// Counts the midnights that clocks without a date pass: when the time falls by more than half a day.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Midnights {
-    days: u32,
-    last: Option<f64>,
-}
-
-impl Midnights {
-    /// Returns the seconds of the next timestamp.
-    pub(crate) fn seconds(&mut self, moment: Moment) -> f64 {
-        const DAY: f64 = 86_400.0;
-        if moment.is_dated {
-            return moment.seconds;
-        }
-        let last = self.last.replace(moment.seconds);
-        self.days += u32::from(last.is_some_and(|last| last - moment.seconds > DAY / 2.0));
-        f64::from(self.days) * DAY + moment.seconds
-    }
 }
 
 /// Returns the number of a day of the Gregorian calendar since 1970; earlier days are negative. The month counts from
@@ -297,7 +254,8 @@ pub(crate) struct FrameClock {
     /// The unit of numbers; None if it is not named, until the size of the first number decides it.
     pub(super) unit: Option<TimeUnit>,
     start: Option<Time>,
-    midnights: Midnights,
+    /// The midnights that a clock without a date has passed, and its last time.
+    midnights: (u32, Option<f64>),
     assumed: Option<TimeUnit>,
 }
 
@@ -320,9 +278,17 @@ impl FrameClock {
         exact.unwrap_or(Time::Seconds(unit.seconds(number)))
     }
 
-    /// Returns the time of a timestamp. Must be called once for each timestamp, in their order.
+    /// Returns the time of a timestamp. Must be called once for each timestamp, in their order: if a clock without a date
+    /// falls by more than half a day, it has passed midnight.
     pub(crate) fn moment(&mut self, moment: Moment) -> Time {
-        Time::Seconds(self.midnights.seconds(moment))
+        const DAY: f64 = 86_400.0;
+        if moment.is_dated {
+            return Time::Seconds(moment.seconds);
+        }
+        let (days, last) = &mut self.midnights;
+        let last = last.replace(moment.seconds);
+        *days += u32::from(last.is_some_and(|last| last - moment.seconds > DAY / 2.0));
+        Time::Seconds(f64::from(*days) * DAY + moment.seconds)
     }
 
     /// Returns the seconds from the first frame to a frame with this time.
@@ -346,18 +312,11 @@ mod tests {
 
     #[test]
     fn a_step_is_rounded_before_it_is_checked() {
-        for (number, unit, expected) in [
-            (16.7, TimeUnit::Milliseconds, Some(0.0167)),
-            (1e9, TimeUnit::Seconds, Some(1e9)),
-            (1.0, TimeUnit::Nanoseconds, Some(1e-9)),
-            (1e-10, TimeUnit::Milliseconds, None),
-            (1e-10, TimeUnit::Seconds, None),
-            (1e308, TimeUnit::Seconds, None),
-            (0.0, TimeUnit::Seconds, None),
-            (-0.1, TimeUnit::Seconds, None),
-            (f64::NAN, TimeUnit::Seconds, None),
-        ] {
-            assert_eq!(unit.step_in_seconds(number), expected, "{number} {unit:?}");
+        for seconds in [0.0167, 1e9, 1e-9] {
+            assert_eq!(step(seconds), Some(seconds), "{seconds}");
+        }
+        for seconds in [1e-10, 1e308, 0.0, -0.1, f64::NAN] {
+            assert_eq!(step(seconds), None, "{seconds}");
         }
     }
 

@@ -37,7 +37,7 @@ use crate::formats::recording::size::{pitch_in_mm, stated};
 use crate::formats::recording::text::{
     self, Field, Separator, TextLines, decimal, is_blank, read_number, text, unpadded,
 };
-use crate::formats::recording::time::TimeUnit;
+use crate::formats::recording::time;
 use crate::formats::seconds::{of_label, since};
 
 /// The largest difference between two sums that is not an error.
@@ -98,7 +98,7 @@ fn header<R: BufRead>(lines: &mut TextLines<R>) -> Result<(FrameSize, ChannelInf
     let value = |key| first.get(key).map(|(value, _)| &**value);
     info.start = value("TIME").map(str::to_owned);
     let step = value("SECONDS_PER_FRAME").and_then(|step| decimal(step.as_bytes()).cell());
-    info.seconds_per_frame = step.and_then(|step| TimeUnit::Seconds.step_in_seconds(step));
+    info.seconds_per_frame = step.and_then(time::step);
     let pitches = value("COL_SPACING")
         .and_then(spacing)
         .zip(value("ROW_SPACING").and_then(spacing));
