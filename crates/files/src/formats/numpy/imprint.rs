@@ -40,23 +40,14 @@ pub(in crate::formats) fn read(mut bytes: &[u8]) -> Result<Imprint, ReadError> {
         )));
     }
     let mut imprint = Imprint::empty(size);
-    for row in 0..size.rows() {
-        for column in 0..size.columns() {
-            let (slow, fast, sides) = if header.fortran_order {
-                (column, row, size.rows())
-            } else {
-                (row, column, size.columns())
-            };
-            let at = (usize::from(slow) * usize::from(sides) + usize::from(fast)) * number.size();
-            let value = number.value(&bytes[at..at + number.size()]);
-            let active = is_active(value).ok_or_else(|| {
-                let (row, column) = (row + 1, column + 1);
-                ReadError::new(format!(
-                    "row {row}, column {column}: found {value}, expected 0, 1 or 255"
-                ))
-            })?;
-            imprint.set(column, row, active);
-        }
+    let places =
+        (0..size.rows()).flat_map(|row| (0..size.columns()).map(move |column| (row, column)));
+    for ((row, column), value) in places.zip(number.values(&header.in_order_of_c(bytes))) {
+        let active = is_active(value).ok_or_else(|| {
+            let place = format!("row {}, column {}", row + 1, column + 1);
+            ReadError::new(format!("{place}: found {value}, expected 0, 1 or 255"))
+        })?;
+        imprint.set(column, row, active);
     }
     Ok(imprint)
 }

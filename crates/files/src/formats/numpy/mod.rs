@@ -11,6 +11,7 @@ pub(super) mod imprint;
 use std::io::{ErrorKind, Read};
 
 use serde::Deserialize;
+use taxel_core::index::index;
 
 use crate::error::ReadError;
 
@@ -274,6 +275,27 @@ impl Header {
     /// The type of its numbers; None if its elements are something else.
     pub(crate) fn number(&self) -> Option<Number> {
         Number::of(self.code())
+    }
+
+    /// The numbers of an array, of which there are as many as its shape says, with the last axis fastest.
+    pub(crate) fn in_order_of_c(&self, bytes: &[u8]) -> Vec<u8> {
+        if !self.fortran_order {
+            return bytes.to_vec();
+        }
+        let size = self.number().map_or(1, Number::size);
+        let sides: Vec<usize> = self.shape.iter().map(|&side| index(side)).collect();
+        let count = bytes.len() / size;
+        let mut ordered = Vec::with_capacity(bytes.len());
+        for element in 0..count {
+            let (mut rest, mut step, mut place) = (element, count, 0);
+            for side in sides.iter().rev() {
+                step /= side;
+                place += rest % side * step;
+                rest /= side;
+            }
+            ordered.extend_from_slice(&bytes[place * size..][..size]);
+        }
+        ordered
     }
 
     /// The shape in words, shortened.

@@ -259,6 +259,16 @@ pub(crate) enum Stop {
     Failed(ReadError),
 }
 
+impl Stop {
+    /// The result of a reading for its caller, who knows whether more was wanted.
+    pub(super) fn settled(read: Result<(), Self>) -> Result<(), ReadError> {
+        match read {
+            Ok(()) | Err(Self::Enough) => Ok(()),
+            Err(Self::Failed(error)) => Err(error),
+        }
+    }
+}
+
 impl<E: Into<ReadError>> From<E> for Stop {
     fn from(error: E) -> Self {
         Self::Failed(error.into())
@@ -269,7 +279,7 @@ impl<E: Into<ReadError>> From<E> for Stop {
 /// and its clock.
 #[derive(Debug, Default)]
 pub(crate) struct ReadState {
-    channels: Vec<(ChannelInfo, u64)>,
+    pub(super) channels: Vec<(ChannelInfo, u64)>,
     /// The number of channels that were not reported: the one without a name of a stream that names none.
     unreported: usize,
     /// Whether a channel without a name is reported only beside others.

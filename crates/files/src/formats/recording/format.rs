@@ -12,7 +12,6 @@ use crate::formats::recording::event::{ReadOptions, ReadState, RecordingSink, Si
 use crate::formats::recording::json as json_lines;
 use crate::formats::recording::numpy;
 use crate::formats::recording::ros::{MCAP_MAGIC, echo, mcap};
-use crate::formats::recording::text::is_parted_by_cr;
 use crate::formats::recording::vendor::{tekscan, xsensor};
 use crate::formats::recording::{boards, table};
 
@@ -212,18 +211,13 @@ pub fn read(
         Reader::Bytes(read) => read(&mut input, &mut sink),
         Reader::File(read) => read(&mut input, &mut sink),
     };
-    match read {
-        Ok(()) | Err(Stop::Enough) => Ok(format),
-        Err(Stop::Failed(error)) => Err(error),
-    }
+    Stop::settled(read).map(|()| format)
 }
 
 /// The error for a content of no known format.
 pub(super) fn refused(head: &[u8]) -> ReadError {
     let text = text_of(head).trim_ascii();
-    if is_parted_by_cr(head) {
-        foreign("text whose lines end in CR alone (save it with LF or CR LF)")
-    } else if is_bitmap(head) {
+    if is_bitmap(head) {
         foreign("a PBM image (taxel describe reads it)")
     } else if head.starts_with(b"SQLite format 3\0") {
         foreign("an SQLite database: of a ROS 2 bag, ros2 bag convert makes an MCAP file")
@@ -255,7 +249,7 @@ fn is_bitmap(head: &[u8]) -> bool {
 /// Whether this may be the text of a recording; zero bytes at its beginning are what a truncated file has there.
 fn is_text(head: &[u8]) -> bool {
     let text = text_of(head);
-    !text.contains(&0) && !is_parted_by_cr(text) && !is_bitmap(text) && !text.starts_with(b"<")
+    !text.contains(&0) && !is_bitmap(text) && !text.starts_with(b"<")
 }
 
 fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {

@@ -182,11 +182,8 @@ fn frames_of_axes(
 /// C.
 fn in_order_of_c(header: &Header, input: &mut dyn Read) -> Result<Vec<u8>, ReadError> {
     let size = header.number().map_or(1, Number::size);
-    let sides: Vec<usize> = header.shape.iter().map(|&side| index(side)).collect();
-    let count = sides
-        .iter()
-        .fold(1_usize, |count, &side| count.saturating_mul(side));
-    let length = count.saturating_mul(size);
+    let sides = header.shape.iter().map(|&side| index(side));
+    let length = sides.fold(size, usize::saturating_mul);
     if length > LARGEST_FORTRAN {
         let message =
             "an array of more than 256 MiB in Fortran order: save numpy.ascontiguousarray of it";
@@ -198,17 +195,7 @@ fn in_order_of_c(header: &Header, input: &mut dyn Read) -> Result<Vec<u8>, ReadE
         let message = format!("{} bytes of numbers, expected {length}", bytes.len());
         return Err(ReadError::new(message));
     }
-    let mut ordered = Vec::with_capacity(length);
-    for element in 0..count {
-        let (mut rest, mut step, mut place) = (element, count, 0);
-        for side in sides.iter().rev() {
-            step /= side;
-            place += rest % side * step;
-            rest /= side;
-        }
-        ordered.extend_from_slice(&bytes[place * size..][..size]);
-    }
-    Ok(ordered)
+    Ok(header.in_order_of_c(&bytes))
 }
 
 /// The type of times in a field or an array.

@@ -147,10 +147,7 @@ impl StreamReader {
                 )));
             }
         };
-        match read {
-            Ok(()) | Err(Stop::Enough) => Ok(()),
-            Err(Stop::Failed(error)) => Err(error),
-        }
+        Stop::settled(read)
     }
 }
 
@@ -162,7 +159,7 @@ fn look(
     before: Option<&'static Format>,
     head: &mut Vec<u8>,
 ) -> Result<Option<&'static Format>, ReadError> {
-    let (mut seen, mut lines) = (0, 0);
+    let (mut seen, mut tried, mut lines) = (0, 0, 0);
     let joined = ReadOptions {
         is_joined: true,
         ..options.clone()
@@ -174,29 +171,17 @@ fn look(
     loop {
         let has_ended = take_bytes(input, usize::MAX, head)?;
         let is_all = has_ended || head.len() >= LOOKED_AT;
-        loop {
-            let rest = &head[seen..head.len().min(LOOKED_AT)];
+        for at in seen + 1..=head.len().min(LOOKED_AT) {
+            let is_line = head[at - 1] == b'\n' && lines < MOST_LINES;
             // The same steps however far the pieces reach. Markers decide at once.
-            let most = if seen < MARKERS {
-                1
-            } else {
-                STEP.max(seen / 8)
-            };
-            let line = rest
-                .iter()
-                .take(most)
-                .position(|&byte| byte == b'\n')
-                .filter(|_| lines < MOST_LINES);
-            let step = line.map_or(most, |end| end + 1);
-            if rest.len() < step {
-                break;
-            }
-            seen += step;
-            lines += usize::from(line.is_some());
-            if let Some(format) = format_of(&head[..seen], false) {
-                return Ok(Some(format));
+            if at <= MARKERS || is_line || at >= tried + STEP.max(tried / 8) {
+                (tried, lines) = (at, lines + usize::from(is_line));
+                if let Some(format) = format_of(&head[..at], false) {
+                    return Ok(Some(format));
+                }
             }
         }
+        seen = head.len();
         if is_all {
             let head = &head[..head.len().min(LOOKED_AT)];
             let is_binary = str::from_utf8(head).is_err_and(|error| error.error_len().is_some());

@@ -174,10 +174,7 @@ pub fn read_rows(mut text: &[u8], consumer: &mut RecordingSink<'_>) -> Result<()
         is_one: true,
         is_inside: false,
     };
-    match table.read() {
-        Ok(()) | Err(Stop::Enough) => Ok(()),
-        Err(Stop::Failed(error)) => Err(error),
-    }
+    Stop::settled(table.read())
 }
 
 struct Table<'a, 'b> {
@@ -1053,19 +1050,16 @@ fn grid(cells: &CellColumns) -> Result<Option<FrameSize>, ReadError> {
 
 /// The names of channels: the words in which the names of their cells differ. A single channel has none.
 fn channel_names(sensors: &[&[String]]) -> Vec<Option<String>> {
-    let [first, others @ ..] = sensors else {
-        return Vec::new();
-    };
-    if others.is_empty() {
+    if sensors.len() == 1 {
         return vec![None];
     }
     let shortest = sensors.iter().map(|words| words.len()).min().unwrap_or(0);
-    let from_end = |words: &[String], at: usize| words[words.len() - 1 - at].clone();
-    let is_start = |at: &usize| others.iter().all(|words| words[*at] == first[*at]);
-    let is_end = |at: &usize| {
-        let mut others = others.iter();
-        others.all(|words| from_end(words, *at) == from_end(first, *at))
+    let are_equal = |word: &dyn Fn(&[String]) -> String| {
+        let mut pairs = sensors.windows(2);
+        pairs.all(|pair| word(pair[0]) == word(pair[1]))
     };
+    let is_start = |at: &usize| are_equal(&|words| words[*at].clone());
+    let is_end = |at: &usize| are_equal(&|words| words[words.len() - 1 - at].clone());
     let start = (0..shortest).take_while(is_start).count();
     let end = (0..shortest - start).take_while(is_end).count();
     let own = |words: &&[String]| words[start..words.len() - end].join("_").replace('#', "");

@@ -149,8 +149,6 @@ impl<R: BufRead> TextLines<R> {
         }
         self.line.clear();
         self.number = self.read;
-        // A longer line is read to its end, so that the next one can be read.
-        let (mut length, mut has_begun) = (0_usize, false);
         loop {
             let bytes = match self.input.fill_buf() {
                 Ok(bytes) => bytes,
@@ -162,7 +160,7 @@ impl<R: BufRead> TextLines<R> {
                 Err(error) => return Err(error.into()),
             };
             if bytes.is_empty() {
-                if !has_begun {
+                if self.line.is_empty() {
                     return Ok(false);
                 }
                 break;
@@ -174,11 +172,10 @@ impl<R: BufRead> TextLines<R> {
             }
             let end = bytes.iter().position(|&byte| byte == b'\n');
             let part = &bytes[..end.unwrap_or(bytes.len())];
-            let room = LONGEST_LINE - self.line.len();
+            // A longer line is read to its end, so that the next one can be read.
+            let room = LONGEST_LINE + 1 - self.line.len();
             self.line.extend_from_slice(&part[..part.len().min(room)]);
             let used = end.map_or(bytes.len(), |end| end + 1);
-            length = length.saturating_add(part.len());
-            has_begun = true;
             self.input.consume(used);
             if end.is_some() {
                 break;
@@ -186,7 +183,7 @@ impl<R: BufRead> TextLines<R> {
         }
         self.read += 1;
         self.number = self.read;
-        if length > LONGEST_LINE {
+        if self.line.len() > LONGEST_LINE {
             let message = "longer than 8 MiB, the limit for a line of a recording";
             return Err(in_line(self.number, message));
         }
@@ -292,12 +289,6 @@ pub(super) fn wrong_field(line: u64, column: usize, field: &[u8]) -> ReadError {
     }
     let found = shortened(&text(field));
     in_field(line, column, format!("found {found:?}, expected a number"))
-}
-
-/// Returns true if the lines of a text end in CR alone, as on the first Macintosh computers.
-pub(crate) fn is_parted_by_cr(text: &[u8]) -> bool {
-    let ends_before = text.iter().rev().skip(1).any(|&byte| byte == b'\r');
-    ends_before && !text.contains(&b'\n') && !text.contains(&0)
 }
 
 /// The words for a cell without a value: those of C, Python, R and databases, of spreadsheets and of pandas.
@@ -551,14 +542,6 @@ mod tests {
         let error = values("1,1e301,3", 3).expect_err("too large");
         assert!(error.starts_with("line 7, column 2: "), "{error}");
         assert!(!error.contains("expected a number"), "{error}");
-    }
-
-    #[test]
-    fn cr_alone_may_end_lines() {
-        assert!(is_parted_by_cr(b"1\r2"));
-        // The file may go on with LF.
-        assert!(!is_parted_by_cr(b"1 2\r"));
-        assert!(!is_parted_by_cr(b"1\r2\n"));
     }
 
     fn fields(line: &str) -> (Separator, Vec<&str>) {

@@ -44,8 +44,6 @@ struct McapState<'a, 'b> {
     schemas: HashMap<u16, Option<MessageKind>>,
     /// The topics whose messages have frames, by number: the name, and the kind of message.
     topics: HashMap<u16, (Rc<str>, MessageKind)>,
-    /// The size of each channel's first frame.
-    sizes: Vec<Option<FrameSize>>,
     start: Option<u64>,
     time: u64,
     values: Vec<f64>,
@@ -57,7 +55,6 @@ pub(crate) fn read(input: &mut dyn Read, sink: &mut Sink<'_>) -> Result<(), Stop
     let mut state = McapState {
         schemas: HashMap::new(),
         topics: HashMap::new(),
-        sizes: Vec::new(),
         start: None,
         time: 0,
         values: Vec::new(),
@@ -200,10 +197,7 @@ impl McapState<'_, '_> {
             start: date_time(start),
             ..ChannelInfo::default()
         })?;
-        if channel == self.sizes.len() {
-            self.sizes.push(size);
-        }
-        let before = self.sizes[channel].or(size);
+        let before = self.sink.state.channels[channel].0.size;
         let wrong = match size {
             Some(size) if size.cells() != found => {
                 let found = counted(found as u64, "value");
