@@ -23,27 +23,6 @@ fn run(
     acquire(&FrameSource::File(path.to_owned()), options, stop, consumer)
 }
 
-/// Returns the times of the five frames of a file and of the three that then take their place.
-fn times_of_a_rewritten(path: &Path, [before, after]: &[String; 2]) -> Vec<f64> {
-    fs::write(path, before).expect("written");
-    let (options, stop) = (AcquireOptions::default(), AtomicBool::new(false));
-    let mut times = Vec::new();
-    let result = run(path, &options, &stop, &mut |event| {
-        if let AcquireEvent::Frame { time, .. } = event {
-            times.extend(time);
-            if times.len() == 5 {
-                fs::write(path, after).expect("written");
-            }
-        }
-        if times.len() == 8 {
-            return ControlFlow::Break(());
-        }
-        ControlFlow::Continue(())
-    });
-    assert!(result.is_ok());
-    times
-}
-
 #[test]
 fn a_wrong_line_that_stands_in_a_file_is_counted_if_the_file_grows_and_else_an_error() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -131,33 +110,6 @@ fn the_channels_of_a_file_that_is_rewritten_keep_their_names_and_count_on() {
 }
 
 #[test]
-fn the_times_of_a_file_that_is_rewritten_while_it_is_followed_go_on() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let csv = |frames: std::ops::Range<u8>| {
-        let lines = frames.map(|tenth| format!("{:.1},1,2\n", f64::from(tenth) / 10.0));
-        "time_s,r0c0,r0c1\n".to_owned() + &lines.collect::<String>()
-    };
-    let json = |frames: std::ops::Range<u8>| {
-        let times = frames.map(|tenth| f64::from(tenth) / 10.0);
-        let lines = times.map(|time| format!("{{\"time\":{time},\"frame\":[[1,2]]}}\n"));
-        lines.collect::<String>()
-    };
-    for (name, contents) in [
-        ("r.csv", [csv(0..5), csv(0..3)]),
-        ("r.jsonl", [json(0..5), json(0..3)]),
-    ] {
-        let times = times_of_a_rewritten(&folder.path().join(name), &contents);
-        assert_eq!(times[..5], [0.0, 0.1, 0.2, 0.3, 0.4], "{name}");
-        assert!(times.is_sorted_by(|one, next| one < next), "{times:?}");
-        let begun = times[5];
-        let steps = times[5..]
-            .iter()
-            .map(|time| ((time - begun) * 1e9).round() / 1e9);
-        assert_eq!(steps.collect::<Vec<_>>(), [0.0, 0.1, 0.2], "{name}");
-    }
-}
-
-#[test]
 fn a_torn_line_of_a_file_that_is_truncated_or_replaced_is_not_a_frame() {
     let folder = tempfile::tempdir().expect("a folder");
     let (path, other) = (folder.path().join("r.csv"), folder.path().join("other.csv"));
@@ -205,10 +157,14 @@ fn values_of_a_rewritten(
         size,
         ..AcquireOptions::default()
     };
-    let (mut values, mut ticks, mut dropped, mut is_cut) = (Vec::new(), 0, 0, false);
+    let (mut values, mut times) = (Vec::new(), Vec::new());
+    let (mut ticks, mut dropped, mut is_cut) = (0, 0, false);
     let result = run(path, &options, &AtomicBool::new(false), &mut |event| {
         match event {
-            AcquireEvent::Frame { frame, .. } => values.push(frame.values()[0]),
+            AcquireEvent::Frame { frame, time } => {
+                values.push(frame.values()[0]);
+                times.extend(time);
+            }
             AcquireEvent::Tick(counts) => {
                 (ticks, dropped) = (ticks + 1, counts.dropped);
                 if values.len() == 2 && !is_cut {
@@ -224,6 +180,8 @@ fn values_of_a_rewritten(
         ControlFlow::Continue(())
     });
     assert!(result.is_ok(), "{result:?}");
+    // Those of a file that is written anew go on, too.
+    assert!(times.is_sorted(), "{times:?}");
     (values, dropped)
 }
 

@@ -77,66 +77,6 @@ fn the_times_of_tekscan_count_from_the_first_frame() {
     }
 }
 
-#[test]
-fn a_pitch_is_rounded_and_one_that_no_sensor_has_is_unknown() {
-    let tekscan = |pitch: &str, unit: &str| {
-        format!(
-            "DATA_TYPE MOVIE\nROWS 1\nCOLS 2\nROW_SPACING {pitch} {unit}\nCOL_SPACING {pitch} {unit}\n\
-             ASCII_DATA @@\nFrame 1\n1,2\n\n@@\n"
-        )
-    };
-    let xsensor = |pitch: &str, unit: &str| {
-        let text = xsensor(["08:21:17.9", "08:21:18.4"]).replace("(cm)", &format!("({unit})"));
-        text.replace(",0.25\n", &format!(",{pitch}\n"))
-    };
-    for (pitch, unit, expected) in [
-        ("0.57", "cm", Some([5.7, 5.7])),
-        ("0.05", "in", Some([1.27, 1.27])),
-        ("1000.1", "mm", None),
-        ("0.00", "cm", None),
-        ("0.0000000000001", "cm", None),
-    ] {
-        for text in [tekscan(pitch, unit), xsensor(pitch, unit)] {
-            let found = recorded(text.as_bytes(), None);
-            assert_eq!(error(&found), None, "{text}");
-            assert_eq!(found.channels[0].pitch_mm, expected, "{text}");
-        }
-    }
-}
-
-#[test]
-fn a_time_step_that_no_recording_has_is_unknown() {
-    let tekscan = |step: &str| {
-        format!(
-            "DATA_TYPE MOVIE\nROWS 1\nCOLS 2\nSECONDS_PER_FRAME {step}\nASCII_DATA @@\n\
-             Frame 1\n1,2\n\nFrame 2\n1,2\n\n@@\n"
-        )
-    };
-    for (step, expected) in [
-        ("0.02", Some(0.02)),
-        ("0.0200000000004", Some(0.02)),
-        ("0.0000000001", None),
-        ("10000000000", None),
-    ] {
-        let found = recorded(tekscan(step).as_bytes(), None);
-        assert_eq!(error(&found), None, "{step}");
-        assert_eq!(found.channels[0].seconds_per_frame, expected, "{step}");
-        assert_eq!(found.frames[1].time, expected, "{step}");
-    }
-}
-
-#[test]
-fn frames_that_are_left_out_are_gaps_in_time() {
-    let tekscan = "DATA_TYPE MOVIE\nROWS 1\nCOLS 2\nSECONDS_PER_FRAME 0.02\nASCII_DATA @@\n\
-                   Frame 1\n1,2\n\nFrame 3\n1,2\n\nFrame 5\n1,2\n\n@@\n";
-    let found = recorded(tekscan.as_bytes(), None);
-    let times = frames(&found, 0).into_iter();
-    let times = times.map(|(label, time, _)| (label, time));
-    let expected = [(1, 0.0), (3, 0.04), (5, 0.08)];
-    let expected = expected.map(|(label, time)| (Some(label), Some(time)));
-    assert_eq!(times.collect::<Vec<_>>(), expected);
-}
-
 /// Returns an export of XSENSOR with two sensors, two frames and the clocks `times`.
 fn xsensor(times: [&str; 2]) -> String {
     let mut text = "Units:,mmHg\nThreshold:,9.5\n".to_owned();

@@ -9,6 +9,7 @@ use taxel_files::formats::read_model;
 
 use super::bodies::{body, session_of, with_spread};
 use super::malice;
+use super::malice::frames::{mcap, topic};
 
 /// With a form that shows a smaller sensor, the cursor was beside the sensor, and the coverage of another taxel was
 /// shown.
@@ -121,33 +122,7 @@ fn a_type_code_whose_size_is_no_digit_is_refused() {
 /// A compressed name of sixteen megabytes takes a few kilobytes: 65,536 topics used up all memory.
 #[test]
 fn a_long_topic_name_is_refused() {
-    let record = |kind: u8, fields: &[&[u8]]| {
-        let fields = fields.concat();
-        [&[kind][..], &(fields.len() as u64).to_le_bytes(), &fields].concat()
-    };
-    let text = |text: &[u8]| {
-        [
-            &u32::try_from(text.len()).expect("short").to_le_bytes(),
-            text,
-        ]
-        .concat()
-    };
-    let magic = b"\x89MCAP0\r\n";
-    let schema = record(
-        3,
-        &[
-            &[1, 0],
-            &text(b"std_msgs/msg/UInt8MultiArray"),
-            &text(b"ros2msg"),
-            &text(b""),
-        ],
-    );
-    let topic = vec![b'a'; 1025];
-    let channel = record(
-        4,
-        &[&[1, 0], &[1, 0], &text(&topic), &text(b"cdr"), &text(b"")],
-    );
-    let file = [&magic[..], &schema, &channel].concat();
+    let file = [mcap(), topic(1, &"a".repeat(1025))].concat();
     let found = crate::frames::recorded(&file, None);
     let message = found.error.expect("the name is long").to_string();
     assert_eq!(message, "a name of 1025 bytes, expected 1024 at most");

@@ -2,7 +2,7 @@
 
 mod archives;
 
-mod frames;
+pub(super) mod frames;
 
 mod packed;
 

@@ -165,7 +165,6 @@ impl PoseFile {
 #[cfg(test)]
 mod tests {
     use taxel_core::figure::{Figure, FigureKind};
-    use taxel_core::index::index;
     use taxel_core::pose::{Anchor, Axis, Ranges};
     use taxel_core::sensor::Sensor;
     use taxel_core::source::Source;
@@ -178,14 +177,6 @@ mod tests {
         let source = Source::Figure(Figure::default_of(FigureKind::Hexagon, &Sensor::default()));
         let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
         Sweep::new(&grid.expect("in range")).run()
-    }
-
-    fn whole(path: &Path, grid: &PoseGrid, existing: Existing) -> NewFile {
-        let mut file = PoseFile::new(path, grid, existing).expect("begun");
-        let ids = vec![7; index(grid.row_length())];
-        let taken = (0..grid.rows()).try_for_each(|row| file.take(row, &ids));
-        assert!(taken.is_continue());
-        file.finish().expect("written").expect("all rows")
     }
 
     fn files(folder: &Path) -> Vec<String> {
@@ -225,18 +216,6 @@ mod tests {
             error.ends_with("a.csv: cannot write: no such folder"),
             "{error}"
         );
-    }
-
-    #[test]
-    fn a_file_that_came_meanwhile_is_kept() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("poses.npy");
-        let result = result();
-        let whole = whole(&path, &result.grid, Existing::Kept);
-        std::fs::write(&path, "mine").expect("written");
-        assert!(whole.persist().expect_err("it is there").exists());
-        assert_eq!(std::fs::read(&path).ok().as_deref(), Some(&b"mine"[..]));
-        assert_eq!(files(folder.path()), ["poses.npy"]);
     }
 
     #[test]

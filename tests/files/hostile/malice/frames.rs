@@ -145,7 +145,7 @@ fn text(text: &str) -> Vec<u8> {
 }
 
 /// Returns a topic with a number, for arrays of bytes.
-fn topic(number: u16, name: &str) -> Vec<u8> {
+pub(crate) fn topic(number: u16, name: &str) -> Vec<u8> {
     let id = number.to_le_bytes();
     record(
         4,
@@ -154,7 +154,7 @@ fn topic(number: u16, name: &str) -> Vec<u8> {
 }
 
 /// Returns the beginning of an MCAP file whose first schema is an array of bytes.
-fn mcap() -> Vec<u8> {
+pub(crate) fn mcap() -> Vec<u8> {
     let schema = [
         text("std_msgs/msg/UInt8MultiArray"),
         text("ros2msg"),

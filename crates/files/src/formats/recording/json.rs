@@ -253,42 +253,10 @@ mod tests {
                 "[[1e301]]",
                 "line 1: 1e301 is too large, expected at most 1e300",
             ),
-            (
-                "[[1]],\"frame\":[[2]]",
-                "line 1, column 22: duplicate key `frame`",
-            ),
-            (
-                "[[1]],\"t\":1,\"time\":2",
-                "line 1, column 27: duplicate key `t`",
-            ),
         ] {
             let error = found(&format!("{{\"frame\":{frame}}}"));
             assert_eq!(error, Err(expected.to_owned()), "{frame}");
         }
-    }
-
-    #[test]
-    fn a_time_has_the_unit_of_its_name() {
-        let times = |lines: [&str; 2]| {
-            let lines = lines.map(|keys| format!("{{{keys}\"frame\":[[1]]}}\n"));
-            let frames = found(&lines.concat()).expect("frames");
-            [frames[0].1, frames[1].1]
-        };
-        for (lines, step) in [
-            (["\"t\":1.5,", "\"time\":2,"], 0.5),
-            (["\"t_ms\":5,", "\"t_ms\":6,"], 0.001),
-            (
-                [
-                    "\"timestamp\":1714564800123,",
-                    "\"timestamp\":1714564800124,",
-                ],
-                0.001,
-            ),
-            (["\"stamp\":\"12:00:00\",", "\"stamp\":\"12:00:01\","], 1.0),
-        ] {
-            assert_eq!(times(lines), [Some(0.0), Some(step)], "{lines:?}");
-        }
-        assert_eq!(times(["\"t\":null,", "\"x\":1,"]), [None, None]);
     }
 
     #[test]

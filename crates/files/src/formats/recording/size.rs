@@ -100,27 +100,6 @@ mod tests {
     }
 
     #[test]
-    fn a_given_size_that_fits_takes_precedence_over_the_stated_one() {
-        let (row, square) = (
-            FrameSize::new(4, 1).expect("an allowed size"),
-            FrameSize::new(2, 2).expect("an allowed size"),
-        );
-        assert_eq!(arranged(4, Some(row), Some(square)), Some(square));
-        assert_eq!(
-            arranged(
-                4,
-                Some(row),
-                Some(FrameSize::new(3, 2).expect("an allowed size"))
-            ),
-            Some(row)
-        );
-        assert_eq!(
-            changed(row, square),
-            "found 1 row of 4, expected 2 of 2 as before"
-        );
-    }
-
-    #[test]
     fn a_pitch_is_rounded_before_it_is_checked() {
         for (length, unit, expected) in [
             (0.57, "cm", Some(5.7)),

@@ -517,33 +517,6 @@ mod tests {
         assert_eq!([text(b"\xc2\xb5m"), text(b"\xb5m")], ["µm", "µm"]);
     }
 
-    fn values(line: &str, count: usize) -> Result<Vec<f64>, String> {
-        let mut values = vec![0.0; count];
-        let read = |field: &[u8]| match field {
-            b"-" => Field::NoCell,
-            _ => read_value(field),
-        };
-        let fields = line.split(',').map(str::as_bytes);
-        let filled = fill_row(&mut values, fields, 7, read);
-        filled.map(|()| values).map_err(|error| error.to_string())
-    }
-
-    #[test]
-    fn fields_beyond_the_values_are_empty() {
-        assert_eq!(values("1,2.5,,", 2), Ok(vec![1.0, 2.5]));
-        assert!(values("-,1", 2).expect("values")[0].is_nan());
-        for (line, expected) in [
-            ("1,,3", "line 7: found 1 value, expected 3"),
-            ("1,2,3,,5", "line 7: found 5 values, expected 3"),
-            ("1,x,3", "line 7, column 2: found \"x\", expected a number"),
-        ] {
-            assert_eq!(values(line, 3), Err(expected.to_owned()));
-        }
-        let error = values("1,1e301,3", 3).expect_err("too large");
-        assert!(error.starts_with("line 7, column 2: "), "{error}");
-        assert!(!error.contains("expected a number"), "{error}");
-    }
-
     fn fields(line: &str) -> (Separator, Vec<&str>) {
         let separator = Separator::of(line.as_bytes());
         let fields = separator.fields(line.as_bytes(), 0);
@@ -576,30 +549,5 @@ mod tests {
             fields.count()
         };
         assert_eq!([1, 2, 3, 4].map(count), [1, 1, 3, 1]);
-    }
-
-    #[test]
-    fn a_comma_is_the_decimal_sign_between_semicolons_and_tabs() {
-        let number = |mark, field: &str| match Separator::Byte(mark).value(field.as_bytes()) {
-            Field::Value(value) => Some(value),
-            Field::NoCell | Field::Wrong => None,
-        };
-        assert_eq!(number(b';', "1,5"), Some(1.5));
-        assert_eq!(number(b'\t', "1,5"), Some(1.5));
-        assert_eq!(number(b',', "1,5"), None);
-        for none in ["", "NaN", "#N/A", "<NA>"] {
-            assert!(is_none(none.as_bytes()), "{none}");
-        }
-        assert!(!is_none(b"-"));
-    }
-
-    #[test]
-    fn comments_and_separator_lines_are_skipped() {
-        for line in ["# a", "sep=;", "\"sep=,\""] {
-            assert!(is_comment(line.as_bytes()), "{line}");
-        }
-        for line in ["#N/A,1", "%time,1", "/ 1", "seconds"] {
-            assert!(!is_comment(line.as_bytes()), "{line}");
-        }
     }
 }
