@@ -11,6 +11,9 @@ use std::ffi::OsStr;
 use std::path::PathBuf;
 
 use taxel_core::frame::{Frame, FrameError, Processing, Rule, RuleOrigin, SetRule, TareFrames};
+use taxel_core::imprint::Imprint;
+use taxel_core::parameter::Parameter;
+use taxel_core::sensor::Sensor;
 use taxel_files::acquire::{AcquireOptions, FrameSource};
 use taxel_files::formats::recording::ChannelInfo;
 use taxel_files::storage::{Existing, ModelChoice};
@@ -241,6 +244,19 @@ impl Pipeline {
              tare by 1 in the sensor's unit",
         )
     }
+}
+
+/// The unit of the values, with a space before it; empty if it is not known.
+pub(crate) fn unit(info: &ChannelInfo) -> String {
+    let unit = info.unit.as_ref();
+    unit.map_or(String::new(), |unit| format!(" {unit}"))
+}
+
+/// A sensor with the taxels of an imprint, and with this pitch in mm if it is in range.
+pub(crate) fn sensor(imprint: &Imprint, pitch: Option<f64>) -> Sensor {
+    let sensor = Sensor::of_size(imprint.size());
+    let with_pitch = pitch.and_then(|pitch| sensor.with(Parameter::Pitch, pitch).ok());
+    with_pitch.unwrap_or(sensor)
 }
 
 #[cfg(test)]

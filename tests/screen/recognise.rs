@@ -232,10 +232,15 @@ fn a_command_that_needs_a_model_is_carried_out_once_there_is_one() {
 fn work_beyond_the_pose_limit_is_stopped() {
     let of_eleven = "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0<Enter>";
     let stopped = "stopped before anything was complete";
-    let looks = |poses| started(untrained().with_pose_limit(poses), of_eleven);
+    let limited = |poses| {
+        let mut world = untrained();
+        world.pose_limit = Some(poses);
+        world
+    };
+    let looks = |poses| started(limited(poses), of_eleven);
     hides(&looks(11), &[stopped]);
     shows(&looks(10), &[stopped]);
-    let mut session = started(untrained().with_pose_limit(10), "r");
+    let mut session = started(limited(10), "r");
     let prepares = "not prepared; Enter prepares it";
     shows(&session, &["training was stopped", prepares]);
     press(&mut session, "t");

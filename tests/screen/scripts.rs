@@ -27,17 +27,12 @@ fn settings(styles: bool, json: bool) -> ScriptOptions {
 
 fn output(script: &str, json: bool) -> Result<String, ScriptFailure> {
     let settings = settings(true, json);
-    let mut printed = String::new();
-    run(
-        script,
-        &[],
-        &settings,
-        world().without_reminders(),
-        &mut |shown: Shown<'_>| {
-            printed.push_str(shown.text);
-            ControlFlow::Continue(())
-        },
-    )
+    let (mut printed, mut world) = (String::new(), world());
+    world.remembers = false;
+    run(script, &[], &settings, world, &mut |shown: Shown<'_>| {
+        printed.push_str(shown.text);
+        ControlFlow::Continue(())
+    })
     .map(|()| printed)
 }
 

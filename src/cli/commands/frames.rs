@@ -11,7 +11,6 @@ use std::ops::{ControlFlow, Range};
 use std::path::PathBuf;
 
 use clap::{Arg, ArgGroup};
-use serde::Serialize;
 use serde_json::json;
 use taxel_core::frame::{
     FlipCounter, FlipReport, Frame, FrameError, FrameSize, Label, Peak, Processed, Rule,
@@ -19,18 +18,16 @@ use taxel_core::frame::{
 };
 use taxel_core::imprint::Imprint;
 use taxel_core::matrix::Matrix;
-use taxel_core::parameter::Parameter;
 use taxel_core::parameter::number::short;
 use taxel_core::progress::stop_if;
 use taxel_core::recognition::Trial;
-use taxel_core::sensor::Sensor;
 use taxel_files::ReadError;
 use taxel_files::formats::name::folded;
 use taxel_files::formats::recording::{
     ChannelInfo, Format, FrameAnswer, RecordingEvent, RecordingNote, no_channel, unshaped,
 };
 use taxel_files::formats::value::{counted, decimal, grouped};
-use taxel_files::formats::{Name, StoredShape, json};
+use taxel_files::formats::{StoredShape, json};
 use taxel_files::storage::{self, check_writable};
 
 use crate::cli::Context;
@@ -48,7 +45,7 @@ use crate::cli::output::evaluation::count;
 use crate::cli::output::plot::heat_map;
 use crate::cli::output::report;
 use crate::cli::output::table::Record;
-use crate::frames::{Pipeline, Taring};
+use crate::frames::{Pipeline, Taring, sensor, unit};
 
 #[expect(clippy::struct_excessive_bools, reason = "one for each flag")]
 #[derive(Debug, clap::Args)]
@@ -166,11 +163,6 @@ impl Frames {
         }
     }
 
-    /// Whether a table is asked for and no choice of frames.
-    fn is_table_of_all(&self) -> bool {
-        self.csv && !self.all && self.choice() == Some(Choice::All)
-    }
-
     /// If an error occurs, the answers made before it are still printed.
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
         if self.csv && self.naming.model.is_some() && !self.expect_labels {
@@ -242,15 +234,6 @@ struct Channel {
     times: Option<(f64, f64)>,
     /// The first frame that is earlier than the one before it: a clock was set back, or the column is not a time.
     backwards: Option<u64>,
-}
-
-#[derive(Serialize)]
-struct ListJson<'a> {
-    /// Null if a damage comes before the format is certain.
-    format: Option<&'static str>,
-    channels: Vec<Record<'static>>,
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    notes: &'a [String],
 }
 
 impl Scan {
@@ -484,8 +467,8 @@ impl Answering<'_> {
             return damage.map_or(Ok(()), Err);
         };
         // A table without a choice has all channels.
-        let of_all = self.asked.is_table_of_all() && wanted.is_none();
-        let channels = if of_all {
+        let is_table = self.asked.csv && !self.asked.all && choice == Choice::All;
+        let channels = if is_table && wanted.is_none() {
             0..scan.channels.len()
         } else {
             let channel = self.channel(&scan, wanted)?;
@@ -569,12 +552,13 @@ impl Answering<'_> {
         };
         let format = scan.format.map(|format| format.name);
         if self.asked.json {
-            let list = ListJson {
-                format,
-                channels: channels.iter().map(Channel::record).collect(),
-                notes: &scan.plain,
-            };
-            return self.write(json::ascii(&list) + "\n");
+            // The format is null if a damage comes before it is certain.
+            let records: Vec<_> = channels.iter().map(Channel::record).collect();
+            let mut list = vec![("format", json!(format)), ("channels", json!(records))];
+            if !scan.plain.is_empty() {
+                list.push(("notes", json!(scan.plain)));
+            }
+            return self.write(json::ascii(&Record(list)) + "\n");
         }
         let count = counted(channels.len() as u64, "channel");
         let mut lines = vec![format!("{}, {count}", format.unwrap_or("damaged"))];
@@ -759,7 +743,12 @@ impl Answering<'_> {
             drawing.heat = heat.cloned();
             drawing
         };
-        let shape = |name| stored(name, &imprint, pitch);
+        let shape = |name| StoredShape {
+            name,
+            sensor: sensor(&imprint, pitch),
+            imprint,
+            source: None,
+        };
         let kept = self.kept.numbered(frame.number);
         if let Some(content) = kept.keep(drawn, shape, &self.cx.shelf, &mut lines)? {
             return self.write(content);
@@ -956,22 +945,6 @@ fn rule_text(set: SetRule, unit: &str) -> String {
         _ => "a",
     };
     text + &format!(" (from {article} {})", set.from.name())
-}
-
-fn unit(info: &ChannelInfo) -> String {
-    let unit = info.unit.as_ref();
-    unit.map_or(String::new(), |unit| format!(" {unit}"))
-}
-
-fn stored(name: Name, imprint: &Imprint, pitch: Option<f64>) -> StoredShape {
-    let sensor = Sensor::of_size(imprint.size());
-    let with_pitch = pitch.and_then(|pitch| sensor.with(Parameter::Pitch, pitch).ok());
-    StoredShape {
-        name,
-        sensor: with_pitch.unwrap_or(sensor),
-        imprint: *imprint,
-        source: None,
-    }
 }
 
 fn noise_json(found: &FlipReport) -> Record<'static> {

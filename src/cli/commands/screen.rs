@@ -99,10 +99,8 @@ pub(crate) fn open(
     app.keymap = settings.keymap().clone();
     app.watch_settings = settings.watch_request();
     let first = watched.map(|request| Message::Live(LiveMessage::Watch(Arc::new(request))));
-    if record.is_some() {
-        // What earlier runs remembered is not in a record.
-        world = world.without_reminders();
-    }
+    // What earlier runs remembered is not in a record.
+    world.remembers = record.is_none();
     let record = record.map(|path| Record::begin(&path, &options));
     let mut record = record.transpose()?;
     let mut watch = |input: &Input| {

@@ -210,22 +210,18 @@ fn say_dropped(app: &mut App, dropped: u32) {
     inform(app, text);
 }
 
-/// Says that only a shape can be moved, and how there is one.
-fn refuse_to_move(app: &mut App) {
-    let (figure, picture) = (app.key_of(&action::FIGURE), app.key_of(&action::PICTURE));
-    let text = if app.reading().imprint.is_empty() {
-        format!("nothing to move: {figure} places a figure, {picture} a stored shape")
-    } else {
-        format!("a drawing has no position; {picture} places a saved one")
-    };
-    refuse(app, text);
-}
-
-/// Returns the source on the matrix. If there is none, a notice says so.
+/// Returns the source on the matrix. If there is none, a notice says that only a shape can be moved, and how there is
+/// one.
 pub(in crate::tui) fn movable(app: &mut App) -> Option<Source> {
     let source = app.history.present().source.clone();
     if source.is_none() {
-        refuse_to_move(app);
+        let (figure, picture) = (app.key_of(&action::FIGURE), app.key_of(&action::PICTURE));
+        let text = if app.reading().imprint.is_empty() {
+            format!("nothing to move: {figure} places a figure, {picture} a stored shape")
+        } else {
+            format!("a drawing has no position; {picture} places a saved one")
+        };
+        refuse(app, text);
     }
     source
 }

@@ -174,7 +174,8 @@ fn placed<'a>(area: Rect, gap: u16, role: Role, rows: &[(&'a Binding, &'a str)])
     let mut x = area.x;
     let mut items = Vec::new();
     for &(binding, name) in rows {
-        let keys = binding.short_labels();
+        let parts = binding.short_parts().into_iter();
+        let keys: String = parts.map(|(label, _)| label).collect();
         let between = usize::from(!keys.is_empty());
         let width = narrow(keys.chars().count() + between + name.chars().count());
         if area.height == 0 || x.saturating_add(width) > area.right() {

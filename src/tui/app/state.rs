@@ -338,12 +338,6 @@ impl App {
         self.paint = None;
     }
 
-    /// Returns true if the document differs from what is stored under its name. An empty one may differ, although
-    /// nothing is lost.
-    pub(in crate::tui) fn is_changed(&self) -> bool {
-        *self.history.present() != self.history.origin().saved
-    }
-
     /// On a smaller sensor than the one that the cursor was put on, this is at the rim.
     pub fn cursor(&self) -> (u8, u8) {
         let (sensor, (column, row)) = (&self.shown().sensor, self.cursor);

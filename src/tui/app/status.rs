@@ -241,6 +241,8 @@ pub(in crate::tui) fn name(app: &App) -> Option<String> {
     if !app.pages.is_empty() && is_other(app, app.shown()) {
         return None;
     }
-    let changed = if app.is_changed() { "*" } else { "" };
+    // An empty one may differ, too, although nothing is lost.
+    let is_changed = *app.history.present() != app.history.origin().saved;
+    let changed = if is_changed { "*" } else { "" };
     Some(format!("{stored}{changed}"))
 }

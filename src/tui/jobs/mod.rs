@@ -129,8 +129,9 @@ pub struct Jobs {
     pub(crate) orphans: Vec<Orphan>,
     /// Offered work that was taken: it is removed from its place once it is in the journal of this program.
     pub(crate) adopted: Vec<Orphan>,
-    /// Whether commands and the recognised set are remembered from run to run.
-    remembers: bool,
+    /// Whether commands and the recognised set are remembered from run to run. A run that is recorded as a script does
+    /// the same again only without.
+    pub remembers: bool,
     pub(crate) models: Models,
     pub(crate) sources: Sources,
     /// The disk's thread, once something was asked of it.
@@ -241,21 +242,8 @@ impl Jobs {
     }
 
     #[must_use]
-    pub fn with_pose_limit(mut self, poses: u64) -> Self {
-        self.pose_limit = Some(poses);
-        self
-    }
-
-    #[must_use]
     pub fn with_model_cache(mut self, cache: Option<ModelCache>) -> Self {
         self.models.cache = cache;
-        self
-    }
-
-    /// Remembers nothing from earlier runs or for later ones, so that a run recorded as a script does the same again.
-    #[must_use]
-    pub fn without_reminders(mut self) -> Self {
-        self.remembers = false;
         self
     }
 

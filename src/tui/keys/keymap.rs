@@ -132,13 +132,6 @@ impl Binding {
         all.iter().all(bound).then_some(label)
     }
 
-    pub fn short_labels(&self) -> String {
-        self.short_parts()
-            .into_iter()
-            .map(|(label, _)| label)
-            .collect()
-    }
-
     pub fn short_parts(&self) -> Vec<(String, Option<&'static Action>)> {
         if let Some(arrows) = self.keys.iter().find_map(|(key, _)| self.all_arrows(*key)) {
             return vec![(arrows.to_owned(), None)];

@@ -6,9 +6,8 @@ use taxel_core::description::{Description, main_region, regions};
 use taxel_core::frame::{Frame, FrameError, Processing};
 use taxel_core::imprint::Imprint;
 use taxel_core::matrix::Matrix;
-use taxel_core::parameter::Parameter;
-use taxel_core::sensor::Sensor;
 
+use crate::frames::sensor;
 use crate::tui::app::Document;
 use crate::tui::live::state::Live;
 
@@ -207,10 +206,8 @@ impl ShadeRange {
 /// taxels only.
 pub fn document(page: &Live) -> Option<Document> {
     let imprint = page.reading.as_ref()?.imprint?;
-    let sensor = Sensor::of_size(imprint.size());
-    let pitch = page.status.channel.square_pitch_mm();
-    let scaled = pitch.and_then(|pitch| sensor.with(Parameter::Pitch, pitch).ok());
-    Some(Document::drawn(scaled.unwrap_or(sensor), imprint))
+    let sensor = sensor(&imprint, page.status.channel.square_pitch_mm());
+    Some(Document::drawn(sensor, imprint))
 }
 
 #[cfg(test)]

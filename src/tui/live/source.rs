@@ -12,7 +12,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use taxel_files::acquire::{FrameRecorder, FrameSource, RecorderError};
-use taxel_files::formats::recording::{RecordedView, RecordingMetadata};
+use taxel_files::formats::recording::RecordingMetadata;
 use taxel_files::formats::value::{counted, grouped};
 use taxel_files::storage::{Existing, below_home};
 
@@ -224,22 +224,13 @@ fn finish(app: &mut App, recording: Arc<Recording>) {
     });
 }
 
-/// Writes threshold, tare and marks beside the recording.
-pub(super) fn write_view(app: &mut App, view: RecordedView) {
-    write(app, "Saving the metadata of", move |recorder| {
-        recorder.describe(|own| {
-            (own.rule, own.tare, own.marks) = (view.rule, view.tare, view.marks);
-        })
-    });
-}
-
 /// Writes out what the recording has gathered.
 pub(crate) fn flush(app: &mut App) {
     write(app, "Saving", FrameRecorder::flush);
 }
 
-/// A failure ends the recording.
-fn write(
+/// Writes to the recording. A failure ends it.
+pub(super) fn write(
     app: &mut App,
     what: &str,
     write: impl FnOnce(&mut FrameRecorder) -> Result<(), RecorderError> + Send + 'static,

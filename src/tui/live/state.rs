@@ -140,7 +140,7 @@ impl Live {
 
     /// Returns threshold, tare and the marks of recorded frames, if frames are recorded and any of these has changed.
     /// They count as written afterwards.
-    pub fn take_changed_view(&mut self) -> Option<RecordedView> {
+    pub(super) fn take_changed_view(&mut self) -> Option<RecordedView> {
         self.recording.name.as_ref()?;
         let own = self.marks.iter();
         let own = own.filter(|(number, _)| *number >= self.recording.from);
@@ -186,8 +186,7 @@ impl Live {
 
     /// Returns the unit of the values, with a space before it; empty if it is not known.
     pub fn unit(&self) -> String {
-        let unit = self.status.channel.unit.as_ref();
-        unit.map_or(String::new(), |unit| format!(" {unit}"))
+        crate::frames::unit(&self.status.channel)
     }
 
     /// Returns the values at both ends of the shades.

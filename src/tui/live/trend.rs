@@ -15,7 +15,7 @@ use taxel_files::formats::value::measured;
 
 use crate::tui::live::reading::round_up;
 use crate::tui::live::state::Live;
-use crate::tui::widget::write::{self, narrow};
+use crate::tui::widget::write::{self, narrow, whole};
 use crate::tui::widget::{Role, Theme};
 
 /// The lines of the least plot: its title and two lines of bars.
@@ -104,13 +104,8 @@ pub fn draw(live: &Live, theme: &Theme, buffer: &mut Buffer, area: Rect) {
 }
 
 /// Returns the height of a bar in half lines: at least one for any value above 0.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a share of a few lines"
-)]
 fn height(share: f64, lines: u16) -> u16 {
-    let halves = (share * 2.0 * f64::from(lines)).round() as u16;
+    let halves = whole((share * 2.0 * f64::from(lines)).round());
     halves.max(u16::from(share > 0.0))
 }
 

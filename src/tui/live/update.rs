@@ -239,7 +239,11 @@ fn refuse_imprint(app: &mut App, page: &Live) {
 pub fn write_changes(app: &mut App) {
     let page = page(app).filter(|page| !page.stopped);
     if let Some(view) = page.and_then(Live::take_changed_view) {
-        source::write_view(app, view);
+        source::write(app, "Saving the metadata of", move |recorder| {
+            recorder.describe(|own| {
+                (own.rule, own.tare, own.marks) = (view.rule, view.tare, view.marks);
+            })
+        });
     }
 }
 

@@ -29,7 +29,7 @@ use crate::tui::keys::{Context, action};
 use crate::tui::recognise::page::Recognition;
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::Role;
-use crate::tui::widget::write::{self, narrow};
+use crate::tui::widget::write::{self, narrow, whole};
 
 const PERCENT: usize = 9;
 const NAME: usize = 14;
@@ -185,7 +185,9 @@ impl Panel<'_> {
         let gap = " ".repeat(width.saturating_sub(write::width(&name)) + 1);
         let label = format!("{name}{gap}");
         let room = usize::from(row.width).saturating_sub(width + 1 + PERCENT);
-        let full = full_columns(probability, room);
+        // A value above 0 has at least one column.
+        let full = usize::from(whole((probability * f64::from(narrow(room))).round()));
+        let full = full.clamp(usize::from(probability > 0.0).min(room), room);
         let [filled, _, _] = self.canvas.theme.bar();
         let bar = filled.to_string().repeat(full) + &" ".repeat(room - full);
         let percent = format!("{:>PERCENT$}", percent(probability));
@@ -206,14 +208,4 @@ pub(crate) fn legend(present: &Imprint, other: &Imprint) -> String {
     }
 }
 
-/// Returns the full columns of a bar; a value above 0 has at least one.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    clippy::cast_precision_loss,
-    reason = "up to the columns of a screen"
-)]
-fn full_columns(share: f64, width: usize) -> usize {
-    let full = (share * width as f64).round() as usize;
-    full.clamp(usize::from(share > 0.0).min(width), width)
-}
+

@@ -14,7 +14,7 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use taxel_files::formats::axis_marks;
 
-use crate::tui::widget::write::{self, narrow};
+use crate::tui::widget::write::{self, narrow, whole};
 use crate::tui::widget::{Role, Theme};
 
 const APART: u16 = 10;
@@ -61,17 +61,12 @@ impl PlotField {
         (share(x, self.x) * wide, (1.0 - share(y, self.y)) * high)
     }
 
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "within the field"
-    )]
     pub fn character(&self, point: (f64, f64)) -> Option<Position> {
         let (x, y) = self.dot(point);
         let (x, y) = (x / f64::from(DOTS.0), y / f64::from(DOTS.1));
         let inside = (0.0..f64::from(self.field.width)).contains(&x)
             && (0.0..f64::from(self.field.height)).contains(&y);
-        inside.then(|| Position::new(self.field.x + x as u16, self.field.y + y as u16))
+        inside.then(|| Position::new(self.field.x + whole(x), self.field.y + whole(y)))
     }
 
     pub fn point(&self, at: Position) -> Option<(f64, f64)> {
@@ -239,17 +234,12 @@ impl DotCanvas {
         )
     }
 
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "within the field"
-    )]
     pub fn set(&mut self, (x, y): DotPosition) {
         let (width, height) = self.size();
         if !(x >= 0.0 && y >= 0.0 && x < width && y < height) {
             return;
         }
-        let (x, y) = (x as usize, y as usize);
+        let (x, y) = (usize::from(whole(x)), usize::from(whole(y)));
         let (across, down) = (usize::from(DOTS.0), usize::from(DOTS.1));
         let index = y / down * usize::from(self.columns) + x / across;
         self.characters[index] |= BITS[y % down][x % across];
@@ -259,17 +249,12 @@ impl DotCanvas {
         self.dashed(from, to, |_| true);
     }
 
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "no longer than the field"
-    )]
     pub fn dashed(&mut self, from: DotPosition, to: DotPosition, shown: impl Fn(u32) -> bool) {
         let Some((from, to)) = clipped(from, to, self.size()) else {
             return;
         };
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-        let steps = dx.abs().max(dy.abs()).ceil().max(1.0) as u32;
+        let steps: u32 = whole(dx.abs().max(dy.abs()).ceil().max(1.0)).into();
         for step in (0..=steps).filter(|&step| shown(step)) {
             let share = f64::from(step) / f64::from(steps);
             self.set((from.0 + dx * share, from.1 + dy * share));

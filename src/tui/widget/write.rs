@@ -214,6 +214,16 @@ pub(in crate::tui) fn narrow(length: impl TryInto<u16>) -> u16 {
     length.try_into().unwrap_or(u16::MAX)
 }
 
+/// Returns a length on the screen without its fraction.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a screen is smaller; anything else ends at a bound"
+)]
+pub(in crate::tui) fn whole(length: f64) -> u16 {
+    length as u16
+}
+
 pub(in crate::tui) fn taxels(length: impl TryInto<u8>) -> u8 {
     length.try_into().unwrap_or(u8::MAX)
 }

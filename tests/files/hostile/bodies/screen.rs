@@ -161,12 +161,13 @@ pub(crate) fn play(bytes: &[u8]) -> bool {
         styles: true,
         json: text.len() % 2 == 0,
     };
-    let mut printed = String::new();
+    let (mut printed, mut world) = (String::new(), world());
+    world.pose_limit = Some(MOST_POSES);
     let result = run(
         text,
         &[],
         &settings,
-        world().with_pose_limit(MOST_POSES),
+        world,
         &mut |shown: Shown<'_>| {
             printed.push_str(shown.text);
             ControlFlow::Continue(())
