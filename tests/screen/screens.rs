@@ -1,8 +1,7 @@
 //! Screens in every size and character set.
 
-use taxel::tui::app::message::{Message, Mouse, MouseKind};
-use taxel::tui::app::state::Options;
-use taxel::tui::widget::theme::{ColorDepth, Palette, Theme};
+use taxel::tui::app::{Message, Mouse, MouseKind, Options};
+use taxel::tui::widget::{ColorDepth, Palette, Theme};
 use taxel_core::sensor::Sensor;
 
 use crate::session::{hides, on, press, shows, sized, world};

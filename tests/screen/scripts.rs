@@ -5,9 +5,8 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use taxel::tui::app::state::Options;
-use taxel::tui::jobs::Jobs;
-use taxel::tui::keys::keymap::Keymap;
+use taxel::tui::app::Options;
+use taxel::tui::keys::Keymap;
 use taxel::tui::script::runner::{ScriptFailure, ScriptOptions, Shown, run};
 
 use crate::session::world;
@@ -88,15 +87,6 @@ fn a_script_gives_the_same_answers_every_time() {
 #[test]
 fn a_hidden_cursor_has_no_place() {
     let script = "Keys f\nScreen\nKeys <Esc>?\nScreen\n";
-    let plain = output(script, false).expect("it holds");
-    assert!(
-        plain.contains("--- screen 80x24 cursor 36,3 ---\n"),
-        "{plain}"
-    );
-    assert!(
-        plain.contains("--- screen 80x24 no cursor ---\n"),
-        "{plain}"
-    );
     let json = output(script, true).expect("it holds");
     let cursors: Vec<serde_json::Value> = json
         .lines()
@@ -177,33 +167,6 @@ fn failed_expectations_and_malformed_commands_are_reported_with_their_line() {
         typo.trim_end().ends_with("; did you mean \"Expect\"?"),
         "{typo}"
     );
-}
-
-#[test]
-fn a_signal_keeps_unsaved_work() {
-    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
-    let world = || {
-        Jobs::new(taxel_files::storage::Library::open(
-            folder.path().to_owned(),
-        ))
-    };
-    let settings = settings(false, false);
-    run(
-        "Keys f<Enter>\nSignal HUP\nQuit",
-        &[],
-        &settings,
-        world(),
-        &mut |_| ControlFlow::Continue(()),
-    )
-    .expect("it holds");
-    run(
-        "Expect /unsaved work from last time: ellipse rx 4.00 ry 4.00, 52 taxels/\nKeys y\nExpect /rx 4.00/",
-        &[],
-        &settings,
-        world(),
-        &mut |_| ControlFlow::Continue(()),
-    )
-    .expect("it holds");
 }
 
 const PAIR: &str = "{\"format\":\"taxel-shape/1\",\"name\":\"pair\",\"sensor\":{\"columns\":4,\"rows\":3},\

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use taxel::tui::app::state::Options;
+use taxel::tui::app::Options;
 use taxel::tui::jobs::Jobs;
 use taxel::tui::script::Session;
 use taxel_files::storage::ModelCache;

@@ -492,28 +492,6 @@ mod tests {
     }
 
     #[test]
-    fn frames_of_other_channels_are_not_shown_before_the_one_that_is_asked_for() {
-        let mut request = WatchRequest::new("none");
-        request.options.channel = Some("right".to_owned());
-        let feed = Feed::new(Arc::new(request));
-        for (index, name) in ["left", "right"].into_iter().enumerate() {
-            let info = ChannelInfo {
-                name: Some(name.to_owned()),
-                ..ChannelInfo::default()
-            };
-            feed.take_in(AcquireEvent::Channel(&info), &FrameSource::Standard);
-            let (frame, time) = (&frame(index), None);
-            let event = AcquireEvent::Frame { frame, time };
-            feed.take_in(event, &FrameSource::Standard);
-        }
-        let batch = feed.take().expect("a frame");
-        let channels = batch.frames.iter().map(|frame| frame.channel);
-        assert_eq!(channels.collect::<Vec<_>>(), [1]);
-        let name = batch.status.channel.name.as_deref();
-        assert_eq!((name, batch.status.channels), (Some("right"), 2));
-    }
-
-    #[test]
     fn a_script_takes_each_frame_once_and_those_that_a_file_has_grown_by() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.csv");

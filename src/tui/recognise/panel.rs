@@ -207,5 +207,3 @@ pub(crate) fn legend(present: &Imprint, other: &Imprint) -> String {
         _ => format!("+ {surplus} surplus, - {missing} missing"),
     }
 }
-
-

@@ -346,40 +346,6 @@ mod tests {
     }
 
     #[test]
-    fn points_stand_between_axes_with_numbers() {
-        let area = Rect::new(0, 0, 30, 9);
-        let points = [
-            (0.1, -0.9),
-            (5.0, -0.05),
-            (5.3, -0.1),
-            (9.9, 0.9),
-            (11.0, 0.0),
-        ];
-        let ascii = shown(Theme::plain(true), area, &points);
-        let lines: Vec<&str> = ascii.lines().collect();
-        assert_eq!(lines[0], "up");
-        assert!(
-            lines[4].starts_with(" 0 +") && lines[4].contains('o'),
-            "{ascii}"
-        );
-        assert!(
-            lines[1].ends_with('.') && lines[6].contains("|."),
-            "{ascii}"
-        );
-        assert!(
-            lines[7].starts_with("   +") && lines[7].matches('+').count() > 2,
-            "{ascii}"
-        );
-        assert!(
-            lines[8].ends_with("right") && lines[8].contains(" 5 "),
-            "{ascii}"
-        );
-        let plain = shown(Theme::plain(false), area, &points);
-        assert!(plain.contains(" 0 ┤") && plain.contains('└'), "{plain}");
-        assert_eq!(plain.matches(['·', 'o']).count(), 3, "{plain}");
-    }
-
-    #[test]
     fn a_mark_shows_how_many_points_share_a_character() {
         let area = Rect::new(0, 0, 50, 9);
         let times = |count: usize, x: f64| std::iter::repeat_n((x, 0.0), count);

@@ -18,7 +18,7 @@ use self::bodies::{BODIES, body};
 use crate::property::config;
 use proptest::collection::vec;
 use proptest::prelude::*;
-use taxel::tui::app::message::Message;
+use taxel::tui::app::Message;
 
 /// Returns the usual inputs of a body, with their names.
 fn seeds(folder: &str) -> Vec<(String, Vec<u8>)> {

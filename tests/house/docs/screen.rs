@@ -4,12 +4,11 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use taxel::tui::app::state::Options;
+use taxel::tui::app::Options;
 use taxel::tui::jobs::Jobs;
-use taxel::tui::keys::key::{Key, parse};
-use taxel::tui::keys::keymap::Keymap;
+use taxel::tui::keys::{Key, Keymap, parse};
 use taxel::tui::script::runner::{ScriptOptions, Shown, run};
-use taxel::tui::widget::theme::{ColorDepth, Palette, Theme};
+use taxel::tui::widget::{ColorDepth, Palette, Theme};
 
 use crate::docs::commands::shell_in;
 use crate::docs::document;

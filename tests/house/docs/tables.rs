@@ -1,6 +1,6 @@
 //! Tables in the documents, made from the program's own tables.
 
-use taxel::tui::keys::keymap::{Context, DEFAULT_KEYS};
+use taxel::tui::keys::{Context, DEFAULT_KEYS};
 use taxel::tui::prompt::commands::listed;
 use taxel_core::description::{DESCRIPTORS, Dimension};
 use taxel_core::parameter::{PARAMETERS, Parameter};

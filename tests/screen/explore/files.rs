@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use serde_json::Value;
-use taxel::tui::app::message::Message;
+use taxel::tui::app::Message;
 use taxel::tui::script::Session;
 
 use super::{Beside, SHORT};

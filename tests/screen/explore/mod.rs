@@ -7,10 +7,9 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 use proptest::prelude::*;
-use taxel::tui::app::message::{Message, Mouse, MouseKind};
+use taxel::tui::app::{Message, Mouse, MouseKind};
 use taxel::tui::jobs::Jobs;
 use taxel::tui::script::Session;
-use taxel_files::storage::Library;
 
 use crate::property::config;
 use crate::session::{hides, press, session, shows, sized, started, then, world};
@@ -141,24 +140,6 @@ fn escape_stops_a_sweep_and_quitting_does_not_wait_for_it() {
     assert!(!program.session.app().ended());
     program.press("<C-c>");
     assert!(program.session.app().ended());
-}
-
-/// A second Ctrl-C quits without a question; the next program offers the work on the matrix.
-#[test]
-fn ctrl_c_while_a_sweep_runs_keeps_unsaved_work() {
-    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
-    let world = || Jobs::new(Library::open(folder.path().to_owned()));
-    let mut program = Beside::within(world(), "fr<Enter>");
-    program.press(LONG);
-    program.until("poses a second");
-    program.press("<C-c><C-c>");
-    assert!(program.session.app().ended());
-    drop(program);
-    let next = Beside::within(world(), "");
-    shows(
-        &next.session,
-        &["There is unsaved work from last time: rectangle length 6.00 width 3.00, 18\n"],
-    );
 }
 
 #[test]

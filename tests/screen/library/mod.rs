@@ -5,7 +5,7 @@ mod unsaved;
 use std::path::Path;
 
 use proptest::prelude::*;
-use taxel::tui::app::document::Document;
+use taxel::tui::app::Document;
 
 use taxel::tui::jobs::Jobs;
 use taxel::tui::script::Session;

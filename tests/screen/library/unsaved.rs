@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 
-use taxel::tui::app::message::Message;
+use taxel::tui::app::Message;
 use taxel::tui::jobs::Jobs;
 use taxel_files::storage::{Library, LibraryEntry, ShapeOrigin};
 

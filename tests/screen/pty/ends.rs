@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use rustix::process::Signal;
-use taxel::tui::app::state::{App, Options};
+use taxel::tui::app::{App, Options};
 use taxel::tui::jobs::Jobs;
 use taxel::tui::terminal;
 use taxel::tui::terminal::input::Input;

@@ -2,8 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use taxel::tui::app::message::{Message, Mouse, MouseKind};
-use taxel::tui::app::state::Options;
+use taxel::tui::app::{Message, Mouse, MouseKind, Options};
 use taxel::tui::script::Session;
 
 use super::program::{Program, Start, TAXEL};
@@ -246,29 +245,6 @@ fn the_mouse_and_the_clipboard_work() {
     program.types(b"q");
     program.ends_well(0);
     assert_eq!(program.count(b"\x1b]52") + program.count(b"?1000h"), 0);
-}
-
-#[test]
-fn a_key_takes_at_most_one_packet_and_the_first_screen_four() {
-    let mut program = Program::start(&Start::default());
-    let first = program.written(|program| program.shows("? Help"));
-    println!("first screen {first}");
-    assert!(first <= 4500, "first screen: {first} bytes");
-    for (keys, shown) in [
-        (&b"\x1b[C"[..], "column  9"),
-        (b" ", "NA 1 in all"),
-        (b"f", "Radius x"),
-        (b"\r", "ellipse rx"),
-        (b" ", "NA "),
-        (b"n", "The matrix is empty"),
-    ] {
-        let bytes = program.written(|program| {
-            program.types(keys);
-            program.shows(shown);
-        });
-        println!("{keys:?} {bytes}");
-        assert!(bytes <= 1448, "{keys:?}: {bytes} bytes");
-    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Keys in notation.
 
-use taxel::tui::keys::key::parse;
+use taxel::tui::keys::parse;
 
 use super::refused;
 

@@ -9,11 +9,9 @@ use std::io;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use taxel::tui::app::message::{Message, Mouse, MouseKind};
-use taxel::tui::app::state::{App, Options};
+use taxel::tui::app::{App, Message, Mouse, MouseKind, Options};
 use taxel::tui::jobs::Jobs;
-use taxel::tui::keys::key::{Arrow, Key, parse};
-use taxel::tui::keys::keymap::{Context, Keymap};
+use taxel::tui::keys::{Arrow, Context, Key, Keymap, parse};
 use taxel::tui::live::message::{LiveMessage, NamedSource};
 use taxel::tui::prompt::commands::{complete, read as read_command};
 use taxel::tui::script::Session;
@@ -163,16 +161,10 @@ pub(crate) fn play(bytes: &[u8]) -> bool {
     };
     let (mut printed, mut world) = (String::new(), world());
     world.pose_limit = Some(MOST_POSES);
-    let result = run(
-        text,
-        &[],
-        &settings,
-        world,
-        &mut |shown: Shown<'_>| {
-            printed.push_str(shown.text);
-            ControlFlow::Continue(())
-        },
-    );
+    let result = run(text, &[], &settings, world, &mut |shown: Shown<'_>| {
+        printed.push_str(shown.text);
+        ControlFlow::Continue(())
+    });
     let ended = match result {
         Ok(()) => true,
         Err(failure) => refused(&failure.message),
