@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use kurbo::{Affine, Arc, Point, SvgArc, Vec2};
+use kurbo::{Affine, Arc, Point, SvgArc};
 use taxel_core::outline::MOST_POINTS;
 
 use crate::error::ReadError;
@@ -16,7 +16,7 @@ pub(super) struct PathRing {
 }
 
 /// Draws paths, each mapped to the plane of the outline.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Chords {
     /// The largest distance between a curve and its chords.
     flatness: f64,
@@ -35,12 +35,7 @@ impl Chords {
     pub(super) fn new(flatness: f64) -> Self {
         Self {
             flatness,
-            count: 0,
-            map: Affine::IDENTITY,
-            rings: Vec::new(),
-            end: Point::ZERO,
-            start: Point::ZERO,
-            arc: None,
+            ..Self::default()
         }
     }
 
@@ -86,8 +81,9 @@ impl Chords {
         // The second derivative bounds the distance between a curve and its chord.
         let bend = (a - 2.0 * b + c).hypot().max((b - 2.0 * c + d).hypot());
         self.add_between((0.75 * bend / self.flatness).sqrt(), |t| {
-            let s = 1.0 - t;
-            (s * s * (s * a + 3.0 * t * b) + t * t * (3.0 * s * c + t * d)).to_point()
+            let rest = 1.0 - t;
+            let (near, far) = (rest * a + 3.0 * t * b, 3.0 * rest * c + t * d);
+            (rest * rest * near + t * t * far).to_point()
         })?;
         self.end_at(to)
     }
@@ -103,12 +99,6 @@ impl Chords {
             None => self.begin_segment(None)?,
         }
         self.end_at(own.to)
-    }
-
-    /// Adds an ellipse with these radii along x and y.
-    pub(super) fn ellipse(&mut self, centre: Point, radii: Vec2) -> Result<(), ReadError> {
-        self.move_to(centre + Vec2::new(radii.x, 0.0));
-        self.arc(Arc::new(centre, radii, 0.0, TAU, 0.0))
     }
 
     fn arc(&mut self, arc: Arc) -> Result<(), ReadError> {

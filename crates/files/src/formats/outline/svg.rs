@@ -7,9 +7,7 @@ use i_overlay::core::fill_rule::FillRule;
 use kurbo::{Affine, Point, SvgArc, Vec2};
 use roxmltree::{Document, Node, ParsingOptions};
 use simplecss::{AttributeOperator, DeclarationTokenizer, PseudoClass, StyleSheet};
-use svgtypes::{
-    Length, LengthUnit, NumberListParser, Paint, PathParser, PathSegment, Transform, ViewBox,
-};
+use svgtypes::{Length, LengthUnit, Paint, PathParser, PathSegment, Transform, ViewBox};
 use taxel_core::quote::{shortened, shortened_message};
 
 use super::curves::Chords;
@@ -226,9 +224,9 @@ impl<'a> Element<'a> {
     }
 
     /// Returns two lengths, each 0 unless it is given.
-    fn pair(&self, x: &str, y: &str) -> Result<Vec2, ReadError> {
+    fn pair(&self, x: &str, y: &str) -> Result<[f64; 2], ReadError> {
         let [x, y] = [self.length(x)?, self.length(y)?];
-        Ok(Vec2::new(x.unwrap_or(0.0), y.unwrap_or(0.0)))
+        Ok([x.unwrap_or(0.0), y.unwrap_or(0.0)])
     }
 
     /// Whether an element is filled or stroked.
@@ -242,6 +240,42 @@ impl<'a> Element<'a> {
             Paint::Inherit => inherited,
             Paint::Color(color) => color.alpha > 0,
             _ => true,
+        })
+    }
+
+    /// Returns the shape as the data of a path.
+    fn path_data(&self) -> Result<String, ReadError> {
+        let text = |name: &str| self.get(name).unwrap_or_default().to_owned();
+        let [rx, ry] = [self.length("rx")?, self.length("ry")?];
+        let [rx, ry] = [rx.or(ry).unwrap_or(0.0), ry.or(rx).unwrap_or(0.0)];
+        Ok(match self.0.tag_name().name() {
+            "path" => text("d"),
+            "rect" => {
+                let [x, y] = self.pair("x", "y")?;
+                let [width, height] = self.pair("width", "height")?;
+                if width <= 0.0 || height <= 0.0 {
+                    return Ok(String::new());
+                }
+                let [rx, ry] = [rx.clamp(0.0, width / 2.0), ry.clamp(0.0, height / 2.0)];
+                let arc = format!("A{rx} {ry} 0 0 1 ");
+                let [right, bottom] = [x + width, y + height];
+                let [low, high] = [y + ry, bottom - ry];
+                let [near, far] = [x + rx, right - rx];
+                format!(
+                    "M{near} {y}H{far}{arc}{right} {low}V{high}{arc}{far} {bottom}\
+                     H{near}{arc}{x} {high}V{low}{arc}{near} {y}z"
+                )
+            }
+            "circle" | "ellipse" => {
+                let [cx, cy] = self.pair("cx", "cy")?;
+                let r = self.length("r")?;
+                let [rx, ry] = [r.unwrap_or(rx), r.unwrap_or(ry)];
+                let (left, right) = (cx - rx, cx + rx);
+                let arc = format!("A{rx} {ry} 0 0 1 ");
+                format!("M{right} {cy}{arc}{left} {cy}{arc}{right} {cy}z")
+            }
+            "line" => String::new(),
+            _ => format!("M{}z", text("points")),
         })
     }
 
@@ -289,7 +323,8 @@ struct Reader<'a> {
 impl<'a> Reader<'a> {
     /// Collects what the attributes of an element, the style sheets and its own style say.
     fn styled(&mut self, node: Node<'a, 'a>) -> Result<Element<'a>, ReadError> {
-        let attributes = node.attributes().map(|own| (own.name(), own.value()));
+        let attributes = node.attributes().filter(|own| own.namespace().is_none());
+        let attributes = attributes.map(|own| (own.name(), own.value()));
         let mut element = Element(node, attributes.collect());
         let length: usize = element.1.iter().map(|(_, value)| value.len() + 20).sum();
         let class = node.attribute("class").unwrap_or_default().len();
@@ -366,7 +401,8 @@ impl<'a> Reader<'a> {
                 let used = self.ids.get(id).copied();
                 let missing = || format!("there is no element {:?}", shortened(id));
                 let used = used.ok_or_else(|| wrong(node, "href", &missing()))?;
-                look.map *= Affine::translate(element.pair("x", "y")?);
+                let [x, y] = element.pair("x", "y")?;
+                look.map *= Affine::translate((x, y));
                 self.element(used, look)?;
             }
             _ if !look.is_visible => {}
@@ -378,7 +414,9 @@ impl<'a> Reader<'a> {
                 }
                 if look.fill && !element.is_transparent("fill-opacity") {
                     self.chords.begin(look.map);
-                    self.shape(&element).map_err(|error| placed(node, error))?;
+                    let data = element.path_data()?;
+                    self.path(node, &data)
+                        .map_err(|error| placed(node, error))?;
                     let rings = self.chords.finish();
                     self.paths.push(Path {
                         rings,
@@ -391,71 +429,12 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Draws the shape of an element.
-    fn shape(&mut self, own: &Element) -> Result<(), ReadError> {
-        match own.0.tag_name().name() {
-            "path" => self.path(own)?,
-            "rect" => self.rectangle(own)?,
-            "circle" | "ellipse" => {
-                let [r, rx, ry] = [own.length("r")?, own.length("rx")?, own.length("ry")?];
-                let radius = |one: Option<f64>, other| r.or(one).or(other).unwrap_or(0.0);
-                let radii = Vec2::new(radius(rx, ry), radius(ry, rx));
-                if radii.x > 0.0 && radii.y > 0.0 {
-                    self.chords
-                        .ellipse(own.pair("cx", "cy")?.to_point(), radii)?;
-                }
-            }
-            _ => {
-                let numbers = NumberListParser::from(own.get("points").unwrap_or_default());
-                let numbers: Result<Vec<f64>, _> = numbers.collect();
-                let numbers = numbers.map_err(|error| wrong(own.0, "points", &error))?;
-                let mut points = numbers
-                    .chunks_exact(2)
-                    .map(|own| Point::new(own[0], own[1]));
-                self.chords.move_to(points.next().unwrap_or_default());
-                points.try_for_each(|point| self.chords.line_to(point))?;
-            }
-        }
-        Ok(())
-    }
-
-    fn rectangle(&mut self, own: &Element) -> Result<(), ReadError> {
-        let (corner, size) = (own.pair("x", "y")?.to_point(), own.pair("width", "height")?);
-        if !(size.x > 0.0 && size.y > 0.0) {
-            return Ok(());
-        }
-        let [rx, ry] = [own.length("rx")?, own.length("ry")?];
-        let radius = |one: Option<f64>, other, side: f64| {
-            one.or(other).unwrap_or(0.0).clamp(0.0, side / 2.0)
-        };
-        let radii = Vec2::new(radius(rx, ry, size.x), radius(ry, rx, size.y));
-        let [left, top, right, bottom] = [0.0, 0.0, size.x, size.y];
-        self.chords.move_to(corner + Vec2::new(radii.x, 0.0));
-        for [from, to] in [
-            [(right - radii.x, top), (right, top + radii.y)],
-            [(right, bottom - radii.y), (right - radii.x, bottom)],
-            [(radii.x, bottom), (left, bottom - radii.y)],
-            [(left, radii.y), (radii.x, top)],
-        ] {
-            self.chords.line_to(corner + Vec2::from(from))?;
-            self.chords.arc_to(&SvgArc {
-                from: corner + Vec2::from(from),
-                to: corner + Vec2::from(to),
-                radii,
-                x_rotation: 0.0,
-                large_arc: false,
-                sweep: true,
-            })?;
-        }
-        Ok(())
-    }
-
-    fn path(&mut self, own: &Element) -> Result<(), ReadError> {
+    /// Draws a path.
+    fn path(&mut self, node: Node, data: &str) -> Result<(), ReadError> {
         // The control points that a smooth curve mirrors, if one of its kind was before.
         let (mut cubic, mut quadratic) = (None, None);
-        let text = own.get("d").filter(|text| *text != "none");
-        for segment in PathParser::from(text.unwrap_or_default()) {
-            let segment = segment.map_err(|error| wrong(own.0, "d", &error))?;
+        for segment in PathParser::from(data) {
+            let segment = segment.map_err(|error| wrong(node, "shape", &error))?;
             let chords = &mut self.chords;
             let end = chords.end;
             let base = if segment.is_abs() {
@@ -725,19 +704,30 @@ mod tests {
                 )
             })
         };
-        use OutlineUnit::{Cells, Mm};
         for (attributes, expected) in [
-            ("", (48.0, Cells)),
-            (r#"width="96" height="96px""#, (48.0, Cells)),
-            (r#"width="96" viewBox="0 0 10 10""#, (48.0, Cells)),
-            (r#"width="96mm" viewBox="0 0 48 48""#, (96.0, Mm)),
+            ("", (48.0, OutlineUnit::Cells)),
+            (r#"width="96" height="96px""#, (48.0, OutlineUnit::Cells)),
+            (
+                r#"width="96" viewBox="0 0 10 10""#,
+                (48.0, OutlineUnit::Cells),
+            ),
+            (
+                r#"width="96mm" viewBox="0 0 48 48""#,
+                (96.0, OutlineUnit::Mm),
+            ),
             (
                 r#"width="9.6cm" height="9cm" viewBox="0 0 96 90""#,
-                (48.0, Mm),
+                (48.0, OutlineUnit::Mm),
             ),
-            (r#"height="1in" viewBox="0 0 9 25.4""#, (48.0, Mm)),
-            (r#"width="72pt" viewBox="0 0 25.4 9""#, (48.0, Mm)),
-            (r#"width="100mm""#, (12.7, Mm)),
+            (
+                r#"height="1in" viewBox="0 0 9 25.4""#,
+                (48.0, OutlineUnit::Mm),
+            ),
+            (
+                r#"width="72pt" viewBox="0 0 25.4 9""#,
+                (48.0, OutlineUnit::Mm),
+            ),
+            (r#"width="100mm""#, (12.7, OutlineUnit::Mm)),
         ] {
             assert_eq!(
                 width(attributes, &OutlineOptions::default()),
@@ -749,14 +739,17 @@ mod tests {
             mm_per_unit: Some(0.5),
             ..OutlineOptions::default()
         };
-        assert_eq!(width(r#"width="100%""#, &options), Ok((24.0, Mm)));
+        assert_eq!(
+            width(r#"width="100%""#, &options),
+            Ok((24.0, OutlineUnit::Mm))
+        );
     }
 
     #[test]
     fn what_is_left_out_is_named() {
-        let content = r##"<rect width="4" height="4" stroke="red" clip-path="url(#c)"/><text>A</text>
+        let content = r#"<rect width="4" height="4" stroke="red" clip-path="url(#c)"/><text>A</text>
             <g stroke="black"><line x2="3" y2="4"/><path fill="none" d="M0 0h9"/></g><image href="a.png"/>
-            <use href="other.svg#part"/><svg viewBox="0 0 1 1"><rect width="1" height="1"/></svg>"##;
+            <use href="other.svg#part"/><svg viewBox="0 0 1 1"><rect width="1" height="1"/></svg>"#;
         let left_out = read_plain(&document("", content))
             .expect("a rectangle")
             .left_out;
@@ -798,7 +791,7 @@ mod tests {
             ),
             (
                 "<svg>\n  <path d='M0 0L1 x'/></svg>".to_owned(),
-                "line 2, column 3: <path> d: invalid number at position 8",
+                "line 2, column 3: <path> shape: invalid number at position 8",
             ),
             (
                 "<svg><rect width='3em' height='1'/></svg>".to_owned(),

@@ -153,7 +153,7 @@ impl Grid {
         let to_circle = map.inverse();
         let mapped = |own: &IntPoint<i64>| (to_circle * self.point(*own)).to_vec2();
         let next = ring.iter().cycle().skip(1);
-        !(margin < 0.5)
+        margin > 0.5
             || ring.iter().zip(next).any(|(from, to)| {
                 let (from, to) = (mapped(from), mapped(to));
                 let way = to - from;
@@ -179,7 +179,7 @@ impl Grid {
 
 /// Returns the ellipse to which the unit circle is mapped.
 fn ellipse(map: Affine) -> EllipseRing {
-    let [a, b, c, d, x, y] = map.as_coeffs();
+    let [a, b, c, d, ..] = map.as_coeffs();
     let radii = [libm::hypot(a, b), libm::hypot(c, d)];
     let are_axes = (a * c + b * d).abs() < 1e-12 * radii[0] * radii[1];
     let (radii, angle) = if are_axes {
@@ -190,7 +190,7 @@ fn ellipse(map: Affine) -> EllipseRing {
         ([radii.x, radii.y], angle)
     };
     EllipseRing {
-        centre: [x, y],
+        centre: <(f64, f64)>::from(map.translation()).into(),
         radii,
         angle: angle.to_degrees().rem_euclid(180.0),
     }
