@@ -42,7 +42,7 @@ use std::io::{self, Write};
 
 use clap::FromArgMatches;
 
-use failure::Failure;
+pub(crate) use failure::{Failure, Named};
 use input::shapes::Shelf;
 use output::charset::Charset;
 use program::{Program, Subcommands};

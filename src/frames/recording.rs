@@ -14,7 +14,7 @@ use crate::frames::WatchRequest;
 /// Any of this waits for the disk, so nothing is called on the screen's thread.
 #[derive(Debug)]
 pub struct Recording {
-    path: PathBuf,
+    pub(crate) path: PathBuf,
     /// None after it was finished, or has failed.
     recorder: Mutex<Option<FrameRecorder>>,
 }
@@ -55,10 +55,6 @@ impl Recording {
             path: path.to_owned(),
             recorder: Mutex::new(Some(recorder)),
         })
-    }
-
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 
     /// Adds to the file. Returns the frames in it; None if nothing is recorded any more. A failure ends the recording.

@@ -13,8 +13,7 @@ use taxel_files::formats::recording::may_be_recording;
 use taxel_files::formats::{Content, imprint_file, read_content};
 use taxel_files::storage::{self, Existing, ModelChoice, Models, below_home};
 
-use crate::tui::live::message::WatchRequest;
-use crate::tui::live::source;
+use crate::tui::live::{WatchRequest, source};
 
 /// The largest size of a file that is opened, in bytes. One byte more is read at most, and the file is refused then.
 const MOST: u64 = imprint_file::MAX_BYTES as u64;

@@ -197,25 +197,6 @@ fn a_threshold_that_differs_from_that_of_the_model_is_pointed_out() {
 }
 
 #[test]
-fn a_set_that_does_not_exist_changes_nothing() {
-    let refused = "no model or file named \"nope\"; models: library, figures, figures-30, shapes";
-    let mut session = started(world(), ":recognise nope<Enter>");
-    shows(
-        &session,
-        &[refused, ":recognise nope", "The matrix is empty"],
-    );
-    hides(&session, &["Recognise: model"]);
-    press(&mut session, "<Esc>r");
-    shows(&session, &["Recognise: model library", "t touch"]);
-    hides(&session, &["not read"]);
-    // The open page stays open, with the set that it has.
-    press(&mut session, ":recognise nope<Enter>");
-    shows(&session, &[refused, "Recognise: model library"]);
-    press(&mut session, "<Esc><Esc>:recognise nope<Enter><Esc>");
-    shows(&session, &["The matrix is empty"]);
-}
-
-#[test]
 fn a_command_that_needs_a_model_is_carried_out_once_there_is_one() {
     shows(&session(":confusion<Enter>"), &["Confusion: model library"]);
     let mut program = beside(":confusion<Enter>");
@@ -226,27 +207,6 @@ fn a_command_that_needs_a_model_is_carried_out_once_there_is_one() {
     let mut program = beside(":confusion<Enter>:");
     program.until("certain 99.8 %");
     hides(&program.session, &["Confusion"]);
-}
-
-#[test]
-fn work_beyond_the_pose_limit_is_stopped() {
-    let of_eleven = "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0<Enter>";
-    let stopped = "stopped before anything was complete";
-    let limited = |poses| {
-        let mut world = untrained();
-        world.pose_limit = Some(poses);
-        world
-    };
-    let looks = |poses| started(limited(poses), of_eleven);
-    hides(&looks(11), &[stopped]);
-    shows(&looks(10), &[stopped]);
-    let mut session = started(limited(10), "r");
-    let prepares = "not prepared; Enter prepares it";
-    shows(&session, &["training was stopped", prepares]);
-    press(&mut session, "t");
-    shows(&session, &["! the model is not prepared yet"]);
-    press(&mut session, "<Enter>");
-    shows(&session, &["training was stopped", prepares]);
 }
 
 #[test]

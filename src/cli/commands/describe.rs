@@ -4,12 +4,11 @@ use std::ffi::OsString;
 
 use taxel_files::formats::Content;
 
-use crate::cli::Context;
 use crate::cli::arguments::flags::name_or_path;
 use crate::cli::arguments::parameters::PitchFlag;
-use crate::cli::failure::Failure;
 use crate::cli::output::report;
 use crate::cli::settings::Pitch;
+use crate::cli::{Context, Failure};
 
 const EXAMPLES: &str = "\
 An imprint is text with one line per row, '#' for an active taxel and '.' for an

@@ -12,11 +12,10 @@ use taxel_core::source::Source;
 use taxel_files::formats::{Content, Drawing, ExportFormat, Name, StoredShape};
 use taxel_files::storage::{self, Existing, FileError, NewFile};
 
-use crate::cli::Context;
 use crate::cli::arguments::flags::name_or_path;
 use crate::cli::arguments::parameters::PitchFlag;
-use crate::cli::failure::Failure;
 use crate::cli::input::shapes::Shelf;
+use crate::cli::{Context, Failure};
 
 const EXAMPLES: &str = "\
 The extension of TO decides the format:

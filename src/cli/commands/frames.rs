@@ -30,7 +30,6 @@ use taxel_files::formats::value::{counted, decimal, grouped};
 use taxel_files::formats::{StoredShape, json};
 use taxel_files::storage::{self, check_writable};
 
-use crate::cli::Context;
 use crate::cli::arguments::flags::whole;
 use crate::cli::arguments::parameters::PitchFlag;
 use crate::cli::commands::export::{Export, KeepFlags, Kept, drawing, written};
@@ -38,13 +37,13 @@ use crate::cli::commands::frame_flags::FrameFlags;
 use crate::cli::commands::model::Table;
 use crate::cli::commands::model::trial::TrialReport;
 use crate::cli::commands::recognise::{FoundNamer, Namer, NamingFlags};
-use crate::cli::failure::Failure;
 use crate::cli::input::recording::{RecordingFile, damaged, noted, refused};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::count;
 use crate::cli::output::plot::heat_map;
 use crate::cli::output::report;
 use crate::cli::output::table::Record;
+use crate::cli::{Context, Failure};
 use crate::frames::{Pipeline, Taring, sensor, unit};
 
 #[expect(clippy::struct_excessive_bools, reason = "one for each flag")]

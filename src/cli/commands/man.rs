@@ -8,10 +8,9 @@ use clap_mangen::Man as Page;
 use taxel_files::formats::value::counted;
 use taxel_files::storage::{self, Existing};
 
-use crate::cli::Context;
 use crate::cli::commands::export;
-use crate::cli::failure::{Failure, Named};
 use crate::cli::program::{self, EXAMPLES as PROGRAM};
+use crate::cli::{Context, Failure, Named};
 
 const EXAMPLES: &str = "\
 Examples:

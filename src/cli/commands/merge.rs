@@ -11,12 +11,11 @@ use taxel_files::formats::{MODEL_FORMAT, archive_kind, json};
 use taxel_files::memory::{MemoryGuard, MemorySize};
 use taxel_files::storage::{self, check_writable, load_atlas, load_model, save_model, write_atlas};
 
-use crate::cli::Context;
 use crate::cli::commands::export::{replacing, written};
 use crate::cli::commands::model::{fits_in_table, model_file};
 use crate::cli::commands::sweep::{atlas, summary};
-use crate::cli::failure::{Failure, Named};
 use crate::cli::output::evaluation::{self, NamedBy};
+use crate::cli::{Context, Failure, Named};
 
 const EXAMPLES: &str = "\
 All shards together give the same atlas as one sweep of the whole grid, or the

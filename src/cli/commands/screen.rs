@@ -14,14 +14,13 @@ use taxel_core::sensor::SENSOR_PARAMETERS;
 use taxel_files::formats::file::{system_reason, write_reason};
 use taxel_files::storage::ModelCache;
 
-use crate::cli::Context;
 use crate::cli::arguments::parameters::SensorFlags;
-use crate::cli::failure::Failure;
 use crate::cli::output::charset::Charset;
 use crate::cli::settings::{Choice, Choosable, Settings};
+use crate::cli::{Context, Failure};
 use crate::tui::app::{App, Message, Options};
 use crate::tui::jobs::Jobs;
-use crate::tui::live::message::{LiveMessage, WatchRequest};
+use crate::tui::live::{LiveMessage, WatchRequest};
 use crate::tui::script::runner::size;
 use crate::tui::terminal;
 use crate::tui::terminal::input::Input;

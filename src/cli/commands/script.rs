@@ -20,11 +20,10 @@ use taxel_files::formats::file::without_mark;
 use taxel_files::formats::name::folded;
 use taxel_files::storage;
 
-use crate::cli::Context;
 use crate::cli::commands::export;
-use crate::cli::failure::{Failure, Named};
 use crate::cli::input::content::{input_name, open};
 use crate::cli::output::charset::Charset;
+use crate::cli::{Context, Failure, Named};
 use crate::tui::app::Options;
 use crate::tui::jobs::Jobs;
 use crate::tui::keys::{Key, parse};

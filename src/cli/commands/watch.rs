@@ -36,7 +36,6 @@ use taxel_files::formats::recording::{
 use taxel_files::formats::value::counted;
 use taxel_files::{ReadError, ReadErrorKind};
 
-use crate::cli::Context;
 use crate::cli::arguments::flags::{name_or_path, npy};
 use crate::cli::arguments::parameters::Given;
 use crate::cli::commands::export::replacing;
@@ -44,9 +43,9 @@ use crate::cli::commands::frame_flags::WatchFlags;
 use crate::cli::commands::model;
 use crate::cli::commands::recognise::{FoundNamer, Namer, NamingFlags};
 use crate::cli::commands::screen::{self, Look};
-use crate::cli::failure::{Failure, Named};
 use crate::cli::input::recording::{RecordingFile, damaged, noted, refused};
 use crate::cli::signals::Signals;
+use crate::cli::{Context, Failure, Named};
 use crate::frames::recording::Recording;
 use crate::frames::{Pipeline, Taring, WatchRequest};
 use crate::tui::live::source::check as check_source;
@@ -580,7 +579,7 @@ impl Watcher<'_> {
             self.say(format!("{frames} of another size not recorded"));
         }
         if recorded.frames == 0 && !is_unreadable {
-            let path = recording.path().display();
+            let path = recording.path.display();
             self.say(format!("no frame came, so {path} was not written"));
         }
         Ok(())

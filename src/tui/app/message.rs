@@ -8,7 +8,7 @@ use taxel_files::formats::Name;
 use crate::tui::app::Document;
 use crate::tui::explore::ExploreMessage;
 use crate::tui::keys::{Arrow, Key};
-use crate::tui::live::message::LiveMessage;
+use crate::tui::live::LiveMessage;
 use crate::tui::recognise::RecogniseMessage;
 
 #[derive(Clone, Debug, PartialEq)]

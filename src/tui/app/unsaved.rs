@@ -2,32 +2,20 @@
 //! so nothing that is asked about is missing in the journal.
 
 use taxel_core::source::Source;
+use taxel_files::formats::Name;
 use taxel_files::formats::value::counted;
-use taxel_files::formats::{Name, StoredShape};
 use taxel_files::storage::{Library, LibraryError, Orphan, UNNAMED, shipped};
 
 use crate::tui::app::{App, Document, DocumentOrigin, Question, RunState, inform, refuse, resume};
 use crate::tui::explore::ranges::about;
 use crate::tui::jobs::{Jobs, answer};
 use crate::tui::keys::action;
-use crate::tui::live::source;
-use crate::tui::live::state::Live;
 use crate::tui::live::update::recording;
+use crate::tui::live::{Live, source};
 use crate::tui::matrix::update::name_of_copy;
 
-/// A document that would be lost if the program died now.
-#[derive(Clone, Debug, PartialEq)]
-pub struct UnsavedWork {
-    name: Name,
-    document: Document,
-}
-
-impl UnsavedWork {
-    /// Returns the work as a shape. This touches the matrix, so it is not done for every key.
-    pub fn to_shape(&self) -> StoredShape {
-        self.document.to_shape(self.name.clone())
-    }
-}
+/// A document that would be lost if the program died now, and its name.
+pub type UnsavedWork = (Name, Document);
 
 impl App {
     /// Whether there is work on the matrix that would be lost.
@@ -55,10 +43,9 @@ impl App {
         let mut works: Vec<UnsavedWork> = Vec::new();
         for (name, document) in saving.chain(kept) {
             if let Some(name) = name
-                && !works.iter().any(|work| work.document == *document)
+                && !works.iter().any(|(_, own)| own == document)
             {
-                let document = document.clone();
-                works.push(UnsavedWork { name, document });
+                works.push((name, document.clone()));
             }
         }
         works

@@ -50,11 +50,8 @@ pub(super) enum SortColumn {
     Value,
 }
 
-struct Column {
-    by: SortColumn,
-    title: &'static str,
-    width: usize,
-}
+/// What it sorts by, its title, and its width.
+type Column = (SortColumn, &'static str, usize);
 
 fn columns(results: &Results) -> Vec<Column> {
     let (sweep, grid) = (results.sweep(), &results.sweep().grid);
@@ -78,10 +75,7 @@ fn columns(results: &Results) -> Vec<Column> {
             VALUE,
         ),
     ]);
-    let columns = columns.into_iter();
     columns
-        .map(|(by, title, width)| Column { by, title, width })
-        .collect()
 }
 
 fn text_of(theme: &Theme, results: &Results, entry: &AtlasEntry, by: SortColumn) -> String {
@@ -113,7 +107,7 @@ struct Panes {
 impl Panes {
     fn of(area: Rect, results: &Results) -> Self {
         let columns = columns(results);
-        let width = SIGN - 1 + columns.iter().map(|column| 1 + column.width).sum::<usize>();
+        let width = SIGN - 1 + columns.iter().map(|column| 1 + column.2).sum::<usize>();
         let lines = [
             Constraint::Length(1),
             Constraint::Fill(1),
@@ -149,7 +143,7 @@ fn click(results: &Results, area: Rect, at: Position) -> Option<Message> {
     }
     let mut end = usize::from(panes.head.x) + SIGN - 1;
     let heading = panes.columns.iter().position(|column| {
-        end += 1 + column.width;
+        end += 1 + column.2;
         usize::from(at.x) < end
     })?;
     Some(Message::Explore(ExploreMessage::Point(heading as u64, 0)))
@@ -161,7 +155,7 @@ fn on(results: &mut Results, _app: &mut App, message: &Message, area: Rect) {
     if let Some(row) = moved(results.list.selected, message) {
         results.list.select(row);
     }
-    let headings: Vec<SortColumn> = columns(results).iter().map(|column| column.by).collect();
+    let headings: Vec<SortColumn> = columns(results).iter().map(|column| column.0).collect();
     match *message {
         Message::Explore(ExploreMessage::Columns(by)) => {
             let mut now = headings.iter();
@@ -186,11 +180,11 @@ fn on(results: &mut Results, _app: &mut App, message: &Message, area: Rect) {
 fn draw(results: &Results, mut canvas: Canvas<'_>, area: Rect) -> Option<Position> {
     let (panes, list, theme) = (Panes::of(area, results), &results.list, canvas.theme);
     let mut headings = vec![(" ".repeat(SIGN - 1), Role::Title)];
-    for column in &panes.columns {
-        let arrow = (list.sort.0 == column.by).then(|| theme.sorted(list.sort.1));
-        let title: String = arrow.into_iter().chain(column.title.chars()).collect();
-        let gap = (1 + column.width).saturating_sub(write::width(&title));
-        let is_chosen = column.by == list.heading;
+    for &(by, title, width) in &panes.columns {
+        let arrow = (list.sort.0 == by).then(|| theme.sorted(list.sort.1));
+        let title: String = arrow.into_iter().chain(title.chars()).collect();
+        let gap = (1 + width).saturating_sub(write::width(&title));
+        let is_chosen = by == list.heading;
         let role = if is_chosen { Role::Focus } else { Role::Title };
         headings.extend([(" ".repeat(gap), Role::Title), (title, role)]);
     }
@@ -202,9 +196,9 @@ fn draw(results: &Results, mut canvas: Canvas<'_>, area: Rect) -> Option<Positio
     let rows = results.rows_from(panes.rows.first);
     for ((index, entry), row) in rows.zip(panes.rows.area.rows()) {
         let (sign, role) = row_style(index == list.selected);
-        let cells = panes.columns.iter().map(|column| {
-            let text = text_of(theme, results, &entry, column.by);
-            format!("{text:>width$}", width = column.width)
+        let cells = panes.columns.iter().map(|&(by, _, width)| {
+            let text = text_of(theme, results, &entry, by);
+            format!("{text:>width$}")
         });
         let text = cells.collect::<Vec<_>>().join(" ");
         canvas.line(row, [(sign, Role::Key), (&*text, role)]);
@@ -346,22 +340,6 @@ impl ImprintList {
 #[cfg(test)]
 mod tests {
     use crate::tui::explore::results::tests::results;
-
-    #[test]
-    fn a_filter_keeps_the_right_imprints_and_the_selected_one() {
-        let (mut list, findings) = results();
-        let before = list.rows.clone();
-        list.select(7);
-        let typed = format!("id<={}", before[7]);
-        list.keep(&typed, &findings).expect("a filter");
-        assert!(list.rows.len() < before.len());
-        assert!(list.rows.iter().all(|&id| id <= before[7]));
-        assert_eq!(list.rows[list.selected], before[7]);
-        list.keep("id<0", &findings).expect("a filter");
-        assert_eq!((list.rows.len(), list.selected), (0, 0));
-        list.keep("", &findings).expect("no filter");
-        assert_eq!(list.rows, before);
-    }
 
     #[test]
     fn the_last_screenful_is_full_and_the_list_scrolls_only_when_needed() {

@@ -119,7 +119,9 @@ impl UnsavedJournal {
     /// Brings the journal up to date, also if someone has removed it. Returns true if it is; an error is reported once.
     fn write(&mut self, post: &Post) -> bool {
         if self.written != self.works || !self.journal.is_intact() {
-            let shapes = self.works.iter().map(UnsavedWork::to_shape);
+            // This touches the matrix, so it is not done for every key.
+            let works = self.works.iter();
+            let shapes = works.map(|(name, document)| document.to_shape(name.clone()));
             if let Err(error) = self.journal.keep(shapes.collect()) {
                 self.due = Some(Instant::now() + RETRY);
                 if !std::mem::replace(&mut self.has_failed, true) {

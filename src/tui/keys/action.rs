@@ -10,7 +10,7 @@ use crate::tui::app::{
 use crate::tui::explore::ExploreMessage::{self, Angle, Columns, Feature, NextTab, Tab};
 use crate::tui::explore::ExploreTab;
 use crate::tui::keys::{Arrow, Context};
-use crate::tui::live::message::LiveMessage::{self, Threshold, Window};
+use crate::tui::live::LiveMessage::{self, Threshold, Window};
 use crate::tui::recognise::RecogniseMessage::{self, NextModel};
 
 #[derive(Debug, PartialEq)]

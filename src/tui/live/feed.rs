@@ -123,15 +123,11 @@ struct Pending {
 
 impl Feed {
     pub fn new(request: Arc<WatchRequest>) -> Arc<Self> {
-        let pending = Pending {
-            channels: ChannelChoice::new(request.options.channel.as_deref()),
-            ..Pending::default()
-        };
         Arc::new(Self {
-            request,
             stop: AtomicBool::new(false),
-            pending: Mutex::new(pending),
+            pending: Mutex::new(Pending::of(&request, 0)),
             recording: Mutex::default(),
+            request,
         })
     }
 
@@ -212,11 +208,7 @@ impl Feed {
     pub fn next(&self, source: &FrameSource, taken: usize, count: usize) -> Vec<FrameBatch> {
         let mut pending = locked(&self.pending);
         let recorded = pending.batch.status.recorded;
-        *pending = Pending {
-            channels: ChannelChoice::new(self.request.options.channel.as_deref()),
-            skipped: taken,
-            ..Pending::default()
-        };
+        *pending = Pending::of(&self.request, taken);
         pending.batch.status.recorded = recorded;
         drop(pending);
         let options = AcquireOptions {
@@ -353,6 +345,14 @@ impl FeedStatus {
 }
 
 impl Pending {
+    fn of(request: &WatchRequest, skipped: usize) -> Self {
+        Self {
+            channels: ChannelChoice::new(request.options.channel.as_deref()),
+            skipped,
+            ..Self::default()
+        }
+    }
+
     fn back_after(&mut self, time: Duration) {
         self.batch.status.state = match &mut self.gap {
             None => SourceState::Live,

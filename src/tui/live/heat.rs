@@ -18,9 +18,7 @@ use taxel_files::formats::value::{self, measured};
 
 use crate::tui::grid::{CellSize, Grid, Look, Window, beside_rulers};
 use crate::tui::keys::Arrow;
-use crate::tui::live::reading::{HeatLayer, LiveReading};
-use crate::tui::live::state::Live;
-use crate::tui::live::trend;
+use crate::tui::live::{HeatLayer, Live, LiveReading, trend};
 use crate::tui::recognise::panel::legend;
 use crate::tui::widget::write::{below, right_of};
 use crate::tui::widget::{ColorDepth, Palette, Role, Theme, Tone};

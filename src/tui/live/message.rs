@@ -7,10 +7,8 @@ use taxel_files::acquire::FrameSource;
 
 use crate::cli::commands::frame_flags::WatchFlags;
 pub use crate::frames::WatchRequest;
-pub use crate::frames::recording::RecordedFrames;
 use crate::naming::Terms;
 use crate::tui::keys::Arrow;
-pub use crate::tui::live::feed::{FeedStatus, FrameBatch, SourceGaps, SourceState};
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum LiveMessage {

@@ -38,3 +38,8 @@ pub mod trend;
 pub mod view;
 
 pub mod update;
+
+pub use feed::*;
+pub use message::*;
+pub use reading::*;
+pub use state::*;

@@ -9,7 +9,7 @@ use taxel_core::matrix::Matrix;
 
 use crate::frames::sensor;
 use crate::tui::app::Document;
-use crate::tui::live::state::Live;
+use crate::tui::live::Live;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeatLayer {

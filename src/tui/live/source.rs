@@ -21,8 +21,8 @@ use crate::frames::recording::{RecordedFrames, Recording};
 use crate::tui::app::{App, inform, refuse};
 use crate::tui::files::WriteAccess;
 use crate::tui::jobs::{answer, caught, start, wait_until_finished};
-use crate::tui::live::feed::{Feed, FrameBatch};
 use crate::tui::live::update::{arrived, begun_in};
+use crate::tui::live::{Feed, FrameBatch};
 
 /// The longest time that a source waits for the thread of the one before to close it: both may be the same serial
 /// line, which only one can open, or the same pipe, whose bytes that thread would take.
@@ -199,7 +199,7 @@ pub(super) fn end_recording(app: &mut App) {
 }
 
 fn finish(app: &mut App, recording: Arc<Recording>) {
-    let path = recording.path().to_string_lossy().into_owned();
+    let path = recording.path.to_string_lossy().into_owned();
     app.jobs.disk(format!("Saving {path}"), move |_| {
         let finished = recording.finish();
         answer(move |app| match finished {
@@ -236,7 +236,7 @@ pub(super) fn write(
     write: impl FnOnce(&mut FrameRecorder) -> Result<(), RecorderError> + Send + 'static,
 ) {
     if let Some((number, recording)) = app.jobs.sources.recording() {
-        let what = format!("{what} {}", recording.path().display());
+        let what = format!("{what} {}", recording.path.display());
         app.jobs.disk(what, move |_| {
             let written = recording.write(write);
             answer(move |app| {

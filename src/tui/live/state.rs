@@ -8,11 +8,12 @@ use taxel_files::formats::recording::{FrameMark, RecordedView};
 
 use crate::frames::{Pipeline, Taring};
 use crate::tui::live::history::FrameHistory;
-use crate::tui::live::message::{FeedStatus, FrameBatch, SourceGaps, SourceState, WatchRequest};
 use crate::tui::live::names::ShapeNames;
-use crate::tui::live::reading::{HeatLayer, LiveReading, ShadeRange};
-use crate::tui::live::threshold;
 use crate::tui::live::trend::Trend;
+use crate::tui::live::{
+    FeedStatus, FrameBatch, HeatLayer, LiveReading, ShadeRange, SourceGaps, SourceState,
+    WatchRequest, threshold,
+};
 
 /// The most frames that a tare by key is made of.
 const TARED: usize = 30;

@@ -3,7 +3,7 @@
 use taxel_core::frame::{FrameError, Rule};
 use taxel_files::formats::value::{counted, fitting, measured};
 
-use crate::tui::live::reading::{nine_digits, round_up};
+use crate::tui::live::{nine_digits, round_up};
 
 /// Formats how many frames have come for a tare, and how many it needs: `3 of 30 frames`.
 pub(super) fn progress_text((taken, wanted): (u64, u64)) -> String {

@@ -13,8 +13,7 @@ use ratatui::layout::Rect;
 use taxel_core::frame::Processed;
 use taxel_files::formats::value::measured;
 
-use crate::tui::live::reading::round_up;
-use crate::tui::live::state::Live;
+use crate::tui::live::{Live, round_up};
 use crate::tui::widget::write::{self, narrow, whole};
 use crate::tui::widget::{Role, Theme};
 

@@ -15,11 +15,10 @@ use crate::tui::app::{
 use crate::tui::files;
 use crate::tui::jobs::answer;
 use crate::tui::keys::{Arrow, Context, action};
-use crate::tui::live::feed::FrameBatch;
-use crate::tui::live::message::{LiveMessage, NamedSource, WatchRequest};
-use crate::tui::live::reading::{self, HeatLayer};
-use crate::tui::live::state::{Live, NO_FRAME, READ_ONCE};
-use crate::tui::live::{names, source, threshold, view};
+use crate::tui::live::{
+    FrameBatch, HeatLayer, Live, LiveMessage, NO_FRAME, NamedSource, READ_ONCE, WatchRequest,
+    names, reading, source, threshold, view,
+};
 use crate::tui::prompt::CommandDialog;
 
 /// Handles a request over the matrix. Requests about the open page, such as a tare, do nothing here, because no page
@@ -271,10 +270,6 @@ fn record(app: &mut App, page: &mut Live) {
     source::record(app, metadata);
 }
 
-fn watched(app: &mut App, number: u64) -> Option<&mut Live> {
-    page(app).filter(|page| page.number == number && !page.stopped)
-}
-
 /// Takes what has come from the source of that number.
 pub(crate) fn arrived(app: &mut App, number: u64, batch: &FrameBatch) {
     report(app, number, |page| page.take(batch));
@@ -294,7 +289,7 @@ pub fn begun_in(app: &mut App, number: u64, file: Result<String, String>) {
 /// Changes the page by a report of its source; one of a source that is no longer watched is dropped.
 fn report(app: &mut App, number: u64, change: impl FnOnce(&mut Live)) {
     let is_open = app.pages.last().is_some_and(|page| page.is::<Live>());
-    let Some(page) = watched(app, number) else {
+    let Some(page) = page(app).filter(|page| page.number == number && !page.stopped) else {
         return;
     };
     let wrong = |page: &Live| (page.trouble(), page.error().cloned());
@@ -402,7 +397,6 @@ mod tests {
     use taxel_core::frame::{Frame, FrameSize};
 
     use super::*;
-    use crate::tui::live::message::FrameBatch;
 
     #[test]
     fn a_threshold_set_by_key_still_drops_small_pieces() {

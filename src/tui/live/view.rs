@@ -21,12 +21,9 @@ use taxel_files::formats::value::{self, counted, fitting, grouped, measured};
 use crate::tui::app::{App, Canvas, Flow, Message, Page, Place, Placed, Wheel};
 use crate::tui::keys::{Arrow, Context, Keymap, action};
 use crate::tui::live::heat::{self, HeatMap, LivePanes, cells, scale};
-use crate::tui::live::message::{LiveMessage, SourceState};
-use crate::tui::live::reading::{HeatLayer, LiveReading};
-use crate::tui::live::state::{Live, NO_FRAME};
 use crate::tui::live::threshold::{self, progress_text};
-use crate::tui::live::trend;
 use crate::tui::live::update::in_live;
+use crate::tui::live::{HeatLayer, Live, LiveMessage, LiveReading, NO_FRAME, SourceState, trend};
 use crate::tui::widget::{Role, Theme, write};
 
 const LABEL: usize = 11;

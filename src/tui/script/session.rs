@@ -27,8 +27,8 @@ use crate::tui::app::view::draw;
 use crate::tui::app::{App, Message, Options};
 use crate::tui::jobs::Jobs;
 use crate::tui::keys::{Key, KeyError, parse};
-use crate::tui::live::message::{LiveMessage, NamedSource, SourceState};
 use crate::tui::live::update::{arrived, last_page};
+use crate::tui::live::{LiveMessage, NamedSource, SourceState};
 use crate::tui::widget::write::narrow;
 use crate::tui::widget::{Palette, Theme, letter, write};
 

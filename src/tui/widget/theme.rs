@@ -233,12 +233,8 @@ impl Theme {
     }
 
     pub fn half_cursor(&self, lower: bool, active: bool) -> char {
-        match (lower, active) {
-            (false, false) => '^',
-            (false, true) => 'A',
-            (true, false) => 'v',
-            (true, true) => 'V',
-        }
+        let signs = if lower { ['v', 'V'] } else { ['^', 'A'] };
+        signs[usize::from(active)]
     }
 
     pub fn more(&self) -> [char; 4] {
