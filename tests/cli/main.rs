@@ -35,6 +35,8 @@ mod batch;
 
 mod library;
 
+mod outlines;
+
 mod picture;
 
 mod sweep;

@@ -143,6 +143,17 @@ impl Outline {
         self
     }
 
+    /// Returns the same outline in the middle of the sensor, at whole cells.
+    #[must_use]
+    pub fn in_the_middle(mut self, sensor: &Sensor) -> Self {
+        let [width, height] = self.size();
+        let place = |side: u8, own: f64| ((f64::from(side) - own) / 2.0).floor();
+        self.values
+            .put(Parameter::X0, place(sensor.columns(), width));
+        self.values.put(Parameter::Y0, place(sensor.rows(), height));
+        self
+    }
+
     /// Returns the same outline, placed by the values that `value` returns for [`PICTURE_PARAMETERS`], each in range on
     /// the sensor.
     ///

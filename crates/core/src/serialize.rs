@@ -79,7 +79,14 @@ impl<'de> Visitor<'de> for RingVisitor {
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, points: A) -> Result<Ring, A::Error> {
-        Vec::deserialize(SeqAccessDeserializer::new(points)).map(Ring::Polygon)
+        let points: Vec<Vec<f64>> = Vec::deserialize(SeqAccessDeserializer::new(points))?;
+        let point = |own: Vec<f64>| {
+            let wrong =
+                |own: Vec<f64>| format!("a point of {} numbers, expected x and y", own.len());
+            <[f64; 2]>::try_from(own).map_err(|own| de::Error::custom(wrong(own)))
+        };
+        let points: Result<_, _> = points.into_iter().map(point).collect();
+        points.map(Ring::Polygon)
     }
 
     fn visit_map<A: MapAccess<'de>>(self, keys: A) -> Result<Ring, A::Error> {

@@ -125,14 +125,15 @@ impl Source {
         }
     }
 
-    /// Returns the same shape on a sensor of this pitch: an outline in mm then has another size in cells.
+    /// Returns the same shape on a sensor of this pitch, if one is given: an outline in mm then has another size in
+    /// cells.
     ///
     /// # Errors
     /// Returns an error if it is then larger than 1,000,000 cells.
-    pub fn at_pitch(self, pitch_mm: f64) -> Result<Self, OutlineError> {
-        match self {
-            Self::Outline(outline) => outline.at_pitch(pitch_mm).map(Self::Outline),
-            other => Ok(other),
+    pub fn at_pitch(self, pitch_mm: Option<f64>) -> Result<Self, OutlineError> {
+        match (self, pitch_mm) {
+            (Self::Outline(outline), Some(pitch)) => outline.at_pitch(pitch).map(Self::Outline),
+            (other, _) => Ok(other),
         }
     }
 

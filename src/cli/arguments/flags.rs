@@ -57,6 +57,11 @@ pub(crate) fn parse_probability(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected a number from 0 to 1".to_owned())
 }
 
+pub(crate) fn parse_positive(text: &str) -> Result<f64, &'static str> {
+    let number = number::read(text).filter(|&number| number > 0.0);
+    number.ok_or("expected a number above 0")
+}
+
 pub(crate) fn parse_shard(text: &str) -> Result<Shard, &'static str> {
     text.parse().map_err(|error: ShardError| error.expected())
 }

@@ -10,10 +10,11 @@ use std::ops::Deref;
 use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
 use taxel_core::figure::{Figure, FigureKind};
 use taxel_core::parameter::{PARAMETERS, Parameter, ParameterError, Unit, number};
-use taxel_core::picture::{PICTURE_PARAMETERS, Picture};
+use taxel_core::picture::PICTURE_PARAMETERS;
 use taxel_core::pose::{Axis, DecimalRange, GivenRanges, RangeError, Ranges};
 use taxel_core::quote::joined;
 use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
+use taxel_core::source::Source;
 
 use crate::cli::failure::Failure;
 use crate::cli::settings::{Pitch, Settings};
@@ -32,14 +33,11 @@ fn group(number: usize) -> (&'static str, Vec<Parameter>, fn(Parameter) -> Strin
         1 => ("Figure", sizes().collect(), usual),
         2 => ("Picture", PICTURE_PARAMETERS.to_vec(), of_shape),
         3 => ("Sensor", SENSOR_PARAMETERS.to_vec(), usual),
-        4 => ("Sensor", MATRIX.to_vec(), usual),
-        5 => ("Sensor", SENSOR_PARAMETERS.to_vec(), of_shape),
-        6 => ("Sensor", SENSOR_PARAMETERS.to_vec(), fitting),
+        4 => ("Sensor", SENSOR_PARAMETERS.to_vec(), of_shape),
+        5 => ("Sensor", SENSOR_PARAMETERS.to_vec(), fitting),
         _ => ("Sensor", vec![Parameter::Pitch], usual),
     }
 }
-
-const MATRIX: [Parameter; 3] = [Parameter::Columns, Parameter::Rows, Parameter::Threshold];
 
 /// All parameters of all kinds of figures.
 pub(crate) type FigureFlags = Flags<0>;
@@ -51,16 +49,13 @@ pub(crate) type PictureFlags = Flags<2>;
 
 pub(crate) type SensorFlags = Flags<3>;
 
-/// A sensor whose pitch does not matter.
-pub(crate) type MatrixFlags = Flags<4>;
-
 /// The sensor of a stored shape.
-pub(crate) type OwnSensorFlags = Flags<5>;
+pub(crate) type OwnSensorFlags = Flags<4>;
 
 /// A sensor that is large enough for all shapes unless its sides are given.
-pub(crate) type FittingSensorFlags = Flags<6>;
+pub(crate) type FittingSensorFlags = Flags<5>;
 
-pub(crate) type PitchFlag = Flags<7>;
+pub(crate) type PitchFlag = Flags<6>;
 
 /// The values that a group of flags gives.
 #[derive(Clone, Debug, Default)]
@@ -135,7 +130,7 @@ pub(crate) fn arg(parameter: Parameter, default: &str) -> Arg {
         ),
     };
     let also = match parameter {
-        Parameter::Pitch => "; adds mm to tables and drawings, not to JSON",
+        Parameter::Pitch => "; converts lengths in mm, adds mm to tables and drawings",
         _ => "",
     };
     let range = Sensor::default().range(parameter);
@@ -229,9 +224,10 @@ impl Given {
         })
     }
 
-    pub(crate) fn picture(&self, picture: Picture, sensor: &Sensor) -> Result<Picture, Failure> {
-        self.fold(PICTURE_PARAMETERS, picture, |picture, parameter, value| {
-            picture.with(parameter, value, sensor)
+    /// A picture or an outline with the given values.
+    pub(crate) fn picture(&self, source: Source, sensor: &Sensor) -> Result<Source, Failure> {
+        self.fold(PICTURE_PARAMETERS, source, |source, parameter, value| {
+            source.with(parameter, value, sensor)
         })
     }
 }

@@ -59,15 +59,19 @@ pub(crate) struct Batch {
 impl Batch {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
         let sensor = self.sensor.sensor(cx.settings.sensor.sensor)?;
-        let pitch = self.sensor.pitch(&cx.settings)?.of(None);
-        let lookup = |name: &str| cx.shelf.source(name).map_err(|error| error.to_string());
+        let pitch = self.sensor.pitch(&cx.settings)?;
+        let lookup = |name: &str| {
+            let source = cx.shelf.source(name).map_err(|error| error.to_string())?;
+            let source = source.at_pitch(pitch.given);
+            source.map_err(|error| error.to_string())
+        };
         let input = Input::open(&self.file)?;
         let jobs = self.jobs.unwrap_or(0).into();
         lines::answer_all(jobs, input, io::stdout().lock(), "pose", || {
             let (mut plane, mut other) = (Plane::new(sensor), Plane::new(sensor));
             move |line: &[u8], answer: &mut Vec<u8>| {
-                let job =
-                    Job::read(line, sensor, pitch, &lookup).map_err(|error| error.to_string())?;
+                let job = Job::read(line, sensor, pitch.of(None), &lookup)
+                    .map_err(|error| error.to_string())?;
                 let plane = match &job {
                     // A line with a sensor of its own does not replace the plane of the others.
                     Job::Touch(own, _) if *own != sensor => &mut other,

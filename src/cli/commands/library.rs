@@ -10,15 +10,18 @@ use serde_json::{Value, json};
 use taxel_core::description::{Region, RegionKind, regions};
 use taxel_core::quote::{as_argument, shortened_message};
 use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
+use taxel_core::touch::Plane;
 use taxel_files::formats::{Content, Name, StoredShape, json};
 use taxel_files::storage::{Library, LibraryEntry, LibraryError, ShapeOrigin};
 
 use crate::cli::Context;
 use crate::cli::arguments::flags::name_or_path;
-use crate::cli::arguments::parameters::PitchFlag;
+use crate::cli::arguments::parameters::{Given, OwnSensorFlags, PitchFlag};
 use crate::cli::commands::describe::described;
 use crate::cli::commands::export;
-use crate::cli::failure::Failure;
+use crate::cli::failure::{Failure, Named};
+use crate::cli::input::outlines::OutlineFlags;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::table::Record;
 
@@ -78,6 +81,23 @@ enum Act {
         #[arg(long)]
         force: bool,
     },
+    /// Store an outline under a name
+    #[command(after_help = IMPORT_EXAMPLES)]
+    Import {
+        /// Outline: an SVG, a CSV of points, or a stored shape; '-' for standard input
+        #[arg(value_name = "FILE|NAME", value_parser = name_or_path())]
+        what: OsString,
+        /// Name to store it under
+        #[arg(long, value_parser = Name::new)]
+        name: Name,
+        #[command(flatten)]
+        sensor: OwnSensorFlags,
+        #[command(flatten)]
+        outlines: OutlineFlags,
+        /// Replace an existing shape of this name
+        #[arg(long)]
+        force: bool,
+    },
     /// Move a shape to the trash
     #[command(after_help = DELETE_EXAMPLES)]
     Delete {
@@ -123,6 +143,27 @@ impl LibraryCommand {
                         imprint,
                         source: None,
                     },
+                };
+                let name = cx.shelf.save(&shape, export::replacing(force))?;
+                cx.print(&format!("saved as {name}\n"))
+            }
+            Act::Import {
+                what,
+                name,
+                sensor,
+                outlines,
+                force,
+            } => {
+                let (source, sensor) = outlines.placed(&what, &Given::default(), &sensor, cx)?;
+                if !matches!(source, Source::Outline(_)) {
+                    let text = "not an outline; for an imprint, use taxel library save";
+                    return Err(Failure::new(text)).named(what.display());
+                }
+                let shape = StoredShape {
+                    name,
+                    sensor,
+                    imprint: Plane::new(sensor).touch(&source),
+                    source: Some(source),
                 };
                 let name = cx.shelf.save(&shape, export::replacing(force))?;
                 cx.print(&format!("saved as {name}\n"))
@@ -244,6 +285,16 @@ Examples:
   taxel library save ring imprint.txt
   taxel library save \"my washer\" washer
   printf '.##.\\n#..#\\n.##.\\n' | taxel library save ring - --force";
+
+const IMPORT_EXAMPLES: &str = "\
+The shape keeps its outline, and its unit; its imprint is that in the middle of
+the sensor. An SVG with a width in mm, cm, in or pt is in mm, which needs the
+--pitch. Strokes, texts and images of an SVG are left out and named.
+
+Examples:
+  taxel library import parts/bracket.svg --name bracket --pitch 2.5
+  taxel library import logo.svg --name logo --mm-per-unit 0.1 --pitch 1
+  taxel library import points.csv --name plate --unit mm --y-up --pitch 2.5";
 
 const DELETE_EXAMPLES: &str = "\
 The last 50 deleted shapes are kept.

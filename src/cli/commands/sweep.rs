@@ -28,10 +28,10 @@ use crate::cli::Context;
 use crate::cli::arguments::flags::{
     TOO_LITTLE_MEMORY, name_or_path, npy, one_of, parse_shard, whole,
 };
-use crate::cli::arguments::parameters::{Given, MatrixFlags, RangeFlags, SizeFlags};
+use crate::cli::arguments::parameters::{Given, RangeFlags, SensorFlags, SizeFlags};
 use crate::cli::commands::export::{replacing, written};
-use crate::cli::commands::picture::moved;
 use crate::cli::failure::Failure;
+use crate::cli::input::outlines::OutlineFlags;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::table::{Record, table};
 use crate::cli::signals::{Signals, on_threads};
@@ -40,7 +40,7 @@ const EXAMPLES: &str = "\
 A range is START:END:STEP with the end included, or one number; decimals are
 exact. By default, x0 and y0 run over one cell in steps of 0.01, at every whole
 degree: 3.6 million poses. The cell of a figure starts at x0 = y0 = 5; that of a
-picture is the cell that it lies in. If the sensor would cut off the shape there
+picture or an outline is the cell that it lies in. If the sensor would cut off the shape there
 at some angle, taxel takes the cell nearest to the middle of the sensor in which
 nothing is cut off. The summary states the ranges. Figures are solid without
 --thickness. A picture keeps its own sensor, unless flags change it.
@@ -50,6 +50,7 @@ Examples:
   taxel sweep ellipse --radius-x 4 --radius-y 4 --thickness 2 --angle 0 --json
   taxel sweep --picture key --columns 32 --rows 32 --x0 11:11.9:0.1 \\
     --y0 11:11.9:0.1 --zoom-x 0.8:1.2:0.1 --atlas key.csv
+  taxel sweep --picture parts/bracket.svg --pitch 2.5 --atlas bracket.npz
   taxel sweep hexagon --side 12 --columns 64 --rows 64 --x0 20:20.99:0.01 \\
     --shard 3/40 --atlas hexagon-3.npz --quiet";
 
@@ -63,7 +64,7 @@ pub(crate) struct Sweep {
     #[arg(value_name = "KIND", value_parser = one_of::<FigureKind, _>(FigureKind::names()))]
     #[arg(hide_possible_values = true)]
     kind: Option<FigureKind>,
-    /// Sweep a stored shape instead
+    /// Sweep a stored shape or an outline instead
     #[arg(long, value_name = "NAME|FILE", value_parser = name_or_path())]
     picture: Option<OsString>,
     #[command(flatten)]
@@ -75,7 +76,9 @@ pub(crate) struct Sweep {
     #[arg(hide_possible_values = true, help_heading = "Grid")]
     anchor: Option<Anchor>,
     #[command(flatten)]
-    sensor: MatrixFlags,
+    sensor: SensorFlags,
+    #[command(flatten)]
+    outlines: OutlineFlags,
     /// Write the atlas, a list of all imprints found, as .csv, .jsonl or .npz
     #[arg(long, value_name = "FILE", value_parser = atlas())]
     atlas: Option<PathBuf>,
@@ -181,8 +184,10 @@ impl Sweep {
                 let text = format!("'--{size}' does not belong to a picture");
                 return Err(Failure::usage(text));
             }
-            return moved(picture, &Given::default(), &self.sensor, &cx.shelf);
+            let values = Given::default();
+            return self.outlines.placed(picture, &values, &self.sensor, cx);
         }
+        self.outlines.refuse()?;
         let sensor = self.sensor.sensor(cx.settings.sensor.sensor)?;
         let kind = self.kind.unwrap_or(FigureKind::Ellipse);
         Ok((Source::Figure(self.sizes.figure(kind, &sensor)?), sensor))

@@ -8,8 +8,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use taxel_files::ReadError;
 use taxel_files::formats::imprint_file::MAX_BYTES;
+
 use taxel_files::formats::recording::may_be_recording;
-use taxel_files::formats::{Content, read_content};
+use taxel_files::formats::{Content, is_svg, read_content};
 
 use crate::cli::failure::{Failure, Named};
 
@@ -53,15 +54,30 @@ impl Input {
         Ok(Self { name, read })
     }
 
+    /// Reads everything, or a byte more than `most`, which is then too much.
+    pub(crate) fn bytes(self, most: usize) -> Result<Vec<u8>, Failure> {
+        let mut bytes = Vec::new();
+        let read = self.read.take(most as u64 + 1).read_to_end(&mut bytes);
+        read.map_err(ReadError::from).named(&self.name)?;
+        Ok(bytes)
+    }
+
     /// Reads an imprint or a stored shape.
     pub(crate) fn content(self) -> Result<Content, Failure> {
-        let mut bytes = Vec::new();
-        let mut limited = self.read.take(MAX_BYTES as u64 + 1);
-        let read = limited.read_to_end(&mut bytes).map_err(ReadError::from);
-        let content = read.and_then(|_| read_content(&bytes)).named(&self.name);
-        content.map_err(|failure| {
-            let hint = "; if this is a recording, use taxel frames";
-            failure.with_hint(if may_be_recording(&bytes) { hint } else { "" })
-        })
+        let name = self.name.clone();
+        content(&self.bytes(MAX_BYTES)?, &name)
     }
+}
+
+/// Reads an imprint or a stored shape from the bytes of the file of that name.
+pub(crate) fn content(bytes: &[u8], name: &str) -> Result<Content, Failure> {
+    read_content(bytes).named(name).map_err(|failure| {
+        failure.with_hint(if is_svg(bytes) {
+            "; if this is an outline, use taxel picture"
+        } else if may_be_recording(bytes) {
+            "; if this is a recording, use taxel frames"
+        } else {
+            ""
+        })
+    })
 }

@@ -4,6 +4,8 @@ pub(super) mod content;
 
 pub(super) mod lines;
 
+pub(super) mod outlines;
+
 pub(super) mod recording;
 
 pub(super) mod shapes;

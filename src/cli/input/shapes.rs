@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 use std::ffi::OsStr;
-use std::io::{ErrorKind, Read};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -14,7 +14,6 @@ use taxel_core::lock::locked;
 use taxel_core::quote::{as_argument, shortened_message};
 use taxel_core::recognition::NamedShape;
 use taxel_core::source::Source;
-use taxel_files::ReadError;
 use taxel_files::formats::file::{is_missing, without_mark};
 use taxel_files::formats::name::folded;
 use taxel_files::formats::{Content, StoredShape, named_shape};
@@ -23,6 +22,8 @@ use taxel_files::storage::{Existing, Expected, Library, LibraryError};
 use crate::cli::commands::model::SetFlags;
 use crate::cli::failure::{Failure, Named};
 use crate::cli::input::content::Input;
+use crate::cli::input::outlines::{may_be_outline, stem};
+use crate::cli::settings::Pitch;
 
 /// The library, which is opened when it is first used: most commands never need it.
 #[derive(Debug, Default)]
@@ -176,20 +177,34 @@ impl Shelf {
 }
 
 /// The largest file of shapes, in bytes.
-const MAX_SET: u64 = 64 << 20;
+const MAX_SET: usize = 64 << 20;
 
-/// Reads a set of shapes: shapes of the library, files with a line of JSON for each, or the whole library.
+/// Reads a set of shapes: shapes of the library, outlines, files with a line of JSON for each, or the whole library.
 pub(crate) fn read_set(
     asked: &SetFlags,
-    pitch: Option<f64>,
+    pitch: Pitch,
     shelf: &Shelf,
 ) -> Result<Vec<NamedShape>, Failure> {
-    let mut shapes = Vec::new();
+    let lengths = pitch.of(None);
+    let (mut shapes, mut outlines) = (Vec::new(), 0);
     for what in &asked.what {
         match shelf.locate(what)? {
             Located::Shape(shape) => shapes.push(shape.of_set()),
-            Located::Input(input) => shapes.extend(set_of_lines(input, pitch, shelf)?),
+            Located::Input(input) => {
+                let name = input.name.clone();
+                let bytes = input.bytes(MAX_SET)?;
+                if may_be_outline(&name, &bytes) {
+                    let outline = asked.outlines.read(&bytes, &name, lengths)?;
+                    shapes.push(NamedShape::new(stem(&name), outline));
+                    outlines += 1;
+                } else {
+                    shapes.extend(set_of_lines(&bytes, lengths, shelf).named(name)?);
+                }
+            }
         }
+    }
+    if outlines == 0 {
+        asked.outlines.refuse()?;
     }
     if asked.library_all {
         let library = shelf.readable();
@@ -197,40 +212,35 @@ pub(crate) fn read_set(
             shapes.push(library.load(&entry.name)?.shape.of_set());
         }
     }
-    if let Some(pitch) = pitch {
-        for shape in &mut shapes {
-            shape.source = shape.source.clone().at_pitch(pitch).named(&shape.name)?;
-        }
+    for shape in &mut shapes {
+        let source = shape.source.clone().at_pitch(pitch.given);
+        shape.source = source.named(&shape.name)?;
     }
     Ok(shapes)
 }
 
 fn set_of_lines(
-    input: Input,
+    text: &[u8],
     pitch: Option<f64>,
     shelf: &Shelf,
 ) -> Result<Vec<NamedShape>, Failure> {
-    let Input { name: place, read } = input;
     let lookup = |name: &str| {
         let found = shelf.source(name);
         found.map_err(|error| shelf.refused(error).text)
     };
-    let mut text = Vec::new();
-    let read = read.take(MAX_SET + 1).read_to_end(&mut text);
-    read.map_err(ReadError::from).named(&place)?;
-    let refused = |message: &str| Err(Failure::new(message)).named(&place);
-    if text.len() as u64 > MAX_SET {
-        return refused("larger than 64 MiB, the limit for a set of shapes");
+    if text.len() > MAX_SET {
+        let text = "larger than 64 MiB, the limit for a set of shapes";
+        return Err(Failure::new(text));
     }
     let mut shapes = Vec::new();
-    for (number, line) in (1..).zip(without_mark(&text).split(|&byte| byte == b'\n')) {
+    for (number, line) in (1..).zip(without_mark(text).split(|&byte| byte == b'\n')) {
         if !line.trim_ascii().is_empty() {
-            let shape = named_shape(line, pitch, &lookup).map_err(|error| error.in_line(number));
-            shapes.push(shape.named(&place)?);
+            let shape = named_shape(line, pitch, &lookup);
+            shapes.push(shape.map_err(|error| error.in_line(number))?);
         }
     }
     if shapes.is_empty() {
-        return refused("no shapes, expected a line of JSON for each");
+        return Err(Failure::new("no shapes, expected a line of JSON for each"));
     }
     Ok(shapes)
 }

@@ -43,7 +43,7 @@ impl Document {
         {
             sensor = sensor.with(Parameter::Pitch, pitch).unwrap_or(sensor);
         }
-        let source = source.at_pitch(sensor.pitch_mm())?;
+        let source = source.at_pitch(Some(sensor.pitch_mm()))?;
         source.check_size(&sensor)?;
         Ok(Self::touched(sensor, source))
     }
@@ -96,7 +96,7 @@ impl Document {
             })
         };
         let source = self.source.clone();
-        let source = source.and_then(|source| source.at_pitch(sensor.pitch_mm()).ok());
+        let source = source.and_then(|source| source.at_pitch(Some(sensor.pitch_mm())).ok());
         match source.filter(allowed) {
             Some(source) => Self {
                 sensor,

@@ -151,7 +151,8 @@ impl Separation {
         Ok(Training::of_grids(scaled, grids))
     }
 
-    /// Multiplies every length of a shape; a picture or an outline is zoomed instead. Returns the shape with its angles and zooms.
+    /// Multiplies every length of a shape; a picture or an outline is zoomed instead; an outline in
+    /// mm is put at another pitch. Returns the shape with its angles and zooms.
     fn scaled(
         &self,
         shape: &NamedShape,
@@ -162,6 +163,16 @@ impl Separation {
         match &shape.source {
             Source::Figure(figure) => scaled.source = enlarged(figure, &shape.name, scale)?.into(),
             Source::Picture(_) | Source::Outline(_) => {
+                let mut scale = scale;
+                if let Source::Outline(outline) = &shape.source
+                    && let Some(pitch) = outline.pitch_mm()
+                {
+                    // In mm, a scale is another pitch, which a zoom of nine decimals would only come near.
+                    let pitch = Some(to_decimals(pitch / scale, 9)).filter(|&own| own > 0.0);
+                    let finer = pitch.and_then(|own| outline.clone().at_pitch(own).ok());
+                    scaled.source = finer.ok_or(TrainingError::Large)?.into();
+                    scale = 1.0;
+                }
                 for axis in [Axis::ZoomX, Axis::ZoomY] {
                     let own = shape.source.get(axis.parameter());
                     let zoom = own.map_or(scale, |own| own * scale);

@@ -83,6 +83,7 @@ impl Job {
                     None => sensor,
                 };
                 let source = record.source(&sensor, own_pitch.or(pitch_mm), lookup)?;
+                let source = source.at_pitch(own_pitch).map_err(wrong_outline)?;
                 source.check_size(&sensor).map_err(wrong_outline)?;
                 Ok(Self::Touch(sensor, source))
             }

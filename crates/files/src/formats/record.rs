@@ -146,10 +146,6 @@ impl Record {
             }
             _ => return Err(ReadError::new(ONE_KEY)),
         };
-        let source = match pitch_mm {
-            Some(pitch) => source.at_pitch(pitch).map_err(wrong_outline)?,
-            None => source,
-        };
         Ok(source.placed(sensor, |parameter| match parameter {
             Parameter::ZoomX | Parameter::ZoomY => self.get(parameter).or(Some(1.0)),
             _ => self.get(parameter),
@@ -312,7 +308,8 @@ mod tests {
         );
         let named = r#"{"picture":"wedge","x0":2,"y0":1,"angle":0}"#;
         assert_eq!(size(job(named, None)?), [2.0, 2.0]);
-        assert_eq!(size(job(named, Some(1.25))?), [4.0, 4.0]);
+        let finer = r#"{"picture":"wedge","x0":2,"y0":1,"angle":0,"sensor":{"pitch_mm":1.25}}"#;
+        assert_eq!(size(job(finer, Some(2.5))?), [4.0, 4.0]);
         Ok(())
     }
 

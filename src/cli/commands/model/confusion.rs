@@ -30,6 +30,7 @@ use crate::cli::commands::model::{
     SetFlags, Table, TableFlags, find, fits_in_table, ready, watched,
 };
 use crate::cli::failure::{Failure, Named};
+use crate::cli::input::outlines::OutlineFlags;
 use crate::cli::input::shapes;
 use crate::cli::output::evaluation::{self, NamedBy, cell, count, matrix_csv, summary};
 use crate::cli::output::table::{Record, row, table};
@@ -247,11 +248,16 @@ impl Confusion {
 
     /// The shapes of `--foreign`. One that the model has would be counted as wrong.
     fn foreign_shapes(&self, model: &FoundModel, cx: &Context) -> Result<Vec<NamedShape>, Failure> {
-        let (what, library_all) = (self.foreign.clone(), false);
+        let set = SetFlags {
+            what: self.foreign.clone(),
+            library_all: false,
+            outlines: OutlineFlags::default(),
+        };
         // Millimetres are divided as they were for the model's own shapes.
         let (given, usual) = (None, cx.settings.sensor.pitch);
-        let pitch = Pitch { given, usual }.of(Some(&model.sensor()));
-        let foreign = shapes::read_set(&SetFlags { what, library_all }, pitch, &cx.shelf)?;
+        let usual = Pitch { given, usual }.of(Some(&model.sensor()));
+        let pitch = Pitch { given, usual };
+        let foreign = shapes::read_set(&set, pitch, &cx.shelf)?;
         let is_known = |own: &&NamedShape| {
             let mut known = model.shapes().iter();
             known.any(|known| folded(&known.name) == folded(&own.name))

@@ -26,6 +26,7 @@ use taxel_files::storage::{
 use crate::cli::arguments::flags::{name_or_path, report};
 use crate::cli::commands::export::{replacing, written};
 use crate::cli::failure::{Failure, Named};
+use crate::cli::input::outlines::OutlineFlags;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::progress::ProgressDisplay;
 use crate::cli::output::table::{Record, csv};
@@ -100,13 +101,15 @@ impl ModelCommand {
 /// A set of shapes.
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct SetFlags {
-    /// Shapes: files of JSON lines, '-' for standard input, or names of the library
-    #[arg(id = "set", value_name = "FILE.jsonl|NAME", value_parser = name_or_path())]
+    /// Shapes: names of the library, outlines (.svg, .csv), files of JSON lines; '-' for standard input
+    #[arg(id = "set", value_name = "FILE|NAME", value_parser = name_or_path())]
     #[arg(required_unless_present = "library_all")]
     pub(crate) what: Vec<OsString>,
     /// All shapes of the library
     #[arg(long)]
     pub(crate) library_all: bool,
+    #[command(flatten)]
+    pub(crate) outlines: OutlineFlags,
 }
 
 /// The forms of a table, and the file that it is written to.

@@ -34,6 +34,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::count;
 use crate::cli::output::plot;
 use crate::cli::output::table::{Record, row, table};
+use crate::cli::settings::Pitch;
 
 /// The most sizes that a search for the wanted error tries.
 const REFINED: u64 = 9;
@@ -41,8 +42,8 @@ const REFINED: u64 = 9;
 const EXAMPLES: &str = "\
 Trains the set once for each scale, pitch and threshold, and prints the error:
 the share of touches that even the best classifier names wrong. A scale
-multiplies all lengths. With --pitch, lengths are in mm, and a taxel of a stored
-shape is 1 mm; the shape's own pitch and threshold are ignored. Sizes at which
+multiplies all lengths. With --pitch, lengths are in mm, whatever their unit,
+and a taxel of a stored shape is 1 mm; its own pitch and threshold are ignored. Sizes at which
 the shapes do not fit on 64 x 64 taxels are left out; standard error lists them.
 Of a model, the shapes, the angles, the threshold and, if they fill one cell,
 the positions are taken; its zooms and its sensor are not.
@@ -57,6 +58,7 @@ larger shape is not always easier to name, so it also says how many of the
 larger scales, or finer pitches, miss the error again.
 
 Examples:
+  taxel model separate parts/*.svg --pitch 1:5:0.5 --want 0.02 --positions 10
   taxel model separate parts --scale 0.5:2:0.1 --positions 20
   taxel model separate parts.jsonl --pitch 1:4:0.5 --want 0.05 --positions 10
   taxel model separate parts --threshold 0.3:0.7:0.1 --positions 10 --json
@@ -66,9 +68,9 @@ Examples:
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = EXAMPLES,
-    override_usage = "taxel model separate [OPTIONS] <--scale|--pitch|--threshold> [MODEL]...",
+    override_usage = "taxel model separate [OPTIONS] <--scale|--pitch|--threshold> [MODEL|FILE|NAME]...",
     group = ArgGroup::new("axes").args(AXES).multiple(true).required(true),
-    mut_arg("set", |set| set.value_name("MODEL|FILE.jsonl|NAME").help(SET)),
+    mut_arg("set", |set| set.value_name("MODEL|FILE|NAME").help(SET)),
 )]
 pub(crate) struct Separate {
     #[command(flatten)]
@@ -194,6 +196,7 @@ impl Separate {
         let what = &self.set.what;
         let (mut separation, threshold) = match &what[..] {
             [model] if !self.set.library_all && is_model(model, cx) => {
+                self.set.outlines.refuse()?;
                 let model = ready(find(model, &cx.shelf)?, self.table.quiet)?;
                 let mut separation = Separation::new(model.shapes().to_vec())?;
                 separation.steps.angles = model.ranges()[Axis::Angle];
@@ -210,7 +213,8 @@ impl Separate {
                     return Err(Failure::new(text)).named(model.display());
                 }
                 // With --pitch, what is in mm is read at 1 mm, and each pitch is then a scale of it.
-                let pitch = self.pitch.map(|_| 1.0).or(cx.settings.sensor.pitch);
+                let (given, usual) = (self.pitch.map(|_| 1.0), cx.settings.sensor.pitch);
+                let pitch = Pitch { given, usual };
                 let shapes = shapes::read_set(&self.set, pitch, &cx.shelf)?;
                 (Separation::new(shapes)?, Sensor::default().threshold())
             }

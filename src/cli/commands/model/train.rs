@@ -20,7 +20,7 @@ use crate::cli::commands::export::replacing;
 use crate::cli::commands::model::keeping::card;
 use crate::cli::commands::model::{SetFlags, folder, model_file, positions, trained};
 use crate::cli::commands::sweep::ranges_in_words;
-use crate::cli::failure::Failure;
+use crate::cli::failure::{Failure, Named};
 use crate::cli::input::shapes;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, NamedBy};
@@ -28,8 +28,10 @@ use crate::cli::output::evaluation::{self, NamedBy};
 const EXAMPLES: &str = r#"A line of JSON is a shape as for 'taxel batch', but with a name and no pose:
   {"name":"disc","figure":"ellipse","radius_x":3,"radius_y":3}
   {"name":"ring","picture":"washer"}
-Of a stored shape, only the taxels count, not its pitch or threshold; a taxel is
-one cell. By default, every shape is touched at 100 x 100 positions inside one
+  {"name":"plate","outline":[[[0,0],[15,0],[15,10]]],"unit":"mm"}
+An SVG, or a CSV of points, is a shape named like its file. What is in mm is
+divided by --pitch; a stored outline in mm has its own pitch without it. Of other
+stored shapes, only the taxels count; a taxel is one cell. By default, every shape is touched at 100 x 100 positions inside one
 cell and at every whole degree. The sensor is the smallest that holds all
 shapes, at least 16 x 16; taxel prints its size. taxel refuses poses that the
 sensor would cut off, since a cut imprint depends on where the rim is;
@@ -37,6 +39,7 @@ sensor would cut off, since a cut imprint depends on where the rim is;
 
 Examples:
   taxel model train parts.jsonl --name parts
+  taxel model train parts/*.svg --pitch 2.5 --name parts
   taxel model train washer key gear --out shipped.npz
   taxel model train parts.jsonl --shard 1/4 --out part-1.npz"#;
 
@@ -95,8 +98,14 @@ impl Train {
     /// The place is tried before the work begins. A signal stops the training and leaves no file.
     pub(super) fn run(self, cx: &Context) -> Result<(), Failure> {
         self.check()?;
-        let pitch = self.sensor.pitch(&cx.settings)?.of(None);
+        let pitch = self.sensor.pitch(&cx.settings)?;
         let shapes = shapes::read_set(&self.set, pitch, &cx.shelf)?;
+        for shape in &shapes {
+            shape
+                .source
+                .check_size(&Sensor::LARGEST)
+                .named(&shape.name)?;
+        }
         let (sensor, anchor, ranges) = self.grid(&shapes)?;
         let training = Training::new(shapes, sensor, anchor, ranges)?
             .with_shard(self.shard.unwrap_or(Shard::WHOLE))
