@@ -61,6 +61,15 @@ fn examples(help: &str) -> Vec<String> {
 fn furnished(folder: &Path) {
     let write = |name: &str, text: &str| fs::write(folder.join(name), text).expect("written");
     write("imprint.txt", ".##.\n#..#\n.##.\n");
+    fs::create_dir(folder.join("parts")).expect("made");
+    let bracket = include_str!("../../examples/parts/bracket-left.svg");
+    write("parts/bracket.svg", bracket);
+    write(
+        "parts/cam.svg",
+        include_str!("../../examples/parts/cam.svg"),
+    );
+    write("logo.svg", &bracket.replace("mm\"", "\""));
+    write("points.csv", "x,y\n0,0\n15,0\n0,10\n");
     write("touch.txt", include_str!("../../examples/touch.txt"));
     write("washer.json", super::describe::SHAPE);
     write("poses.jsonl", "{\"imprint\":[\"##\",\"#.\"]}\n");

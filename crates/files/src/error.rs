@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 
 use taxel_core::imprint::ImprintError;
+use taxel_core::outline::OutlineError;
 use taxel_core::parameter::ParameterError;
 
 use crate::formats::file::system_reason;
@@ -115,6 +116,12 @@ impl From<serde_json::Error> for ReadError {
 impl From<ParameterError> for ReadError {
     fn from(error: ParameterError) -> Self {
         Self::new(error.to_string())
+    }
+}
+
+impl From<OutlineError> for ReadError {
+    fn from(error: OutlineError) -> Self {
+        Self::new(error.to_string()).of_key("outline")
     }
 }
 

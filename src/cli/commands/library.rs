@@ -292,7 +292,7 @@ the sensor. An SVG with a width in mm, cm, in or pt is in mm, which needs the
 --pitch. Strokes, texts and images of an SVG are left out and named.
 
 Examples:
-  taxel library import parts/bracket.svg --name bracket --pitch 2.5
+  taxel library import parts/bracket.svg --name \"my bracket\" --pitch 2.5
   taxel library import logo.svg --name logo --mm-per-unit 0.1 --pitch 1
   taxel library import points.csv --name plate --unit mm --y-up --pitch 2.5";
 

@@ -28,7 +28,7 @@ Examples:
   taxel picture parts/bracket.svg --pitch 2.5 --angle 30
   taxel picture points.csv --unit mm --y-up --pitch 2.5";
 
-/// Move, zoom and turn a stored shape or an outline and describe its imprint
+/// Move, zoom and turn a shape or an outline, and describe it
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Picture {

@@ -50,7 +50,7 @@ Examples:
   taxel sweep ellipse --radius-x 4 --radius-y 4 --thickness 2 --angle 0 --json
   taxel sweep --picture key --columns 32 --rows 32 --x0 11:11.9:0.1 \\
     --y0 11:11.9:0.1 --zoom-x 0.8:1.2:0.1 --atlas key.csv
-  taxel sweep --picture parts/bracket.svg --pitch 2.5 --atlas bracket.npz
+  taxel sweep --picture parts/bracket.svg --pitch 2.5 --angle 0:355:5
   taxel sweep hexagon --side 12 --columns 64 --rows 64 --x0 20:20.99:0.01 \\
     --shard 3/40 --atlas hexagon-3.npz --quiet";
 

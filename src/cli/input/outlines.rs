@@ -24,20 +24,19 @@ use crate::cli::{Context, note};
 
 /// How files of outlines are read.
 #[derive(Clone, Debug, Default, clap::Args)]
-#[command(next_help_heading = "Outline")]
 pub(crate) struct OutlineFlags {
     /// Unit of the points of a CSV: cells (default) or mm
-    #[arg(long, value_name = "UNIT", value_parser = ["cells", "mm"])]
+    #[arg(long, value_name = "UNIT", value_parser = ["cells", "mm"], help_heading = "Outline")]
     #[arg(hide_possible_values = true, conflicts_with = "mm_per_unit")]
     unit: Option<String>,
     /// Size of a user unit of an SVG, in mm; default a cell, unless the SVG has a width in mm, cm, in or pt
-    #[arg(long, value_name = "MM", value_parser = parse_positive)]
+    #[arg(long, value_name = "MM", value_parser = parse_positive, help_heading = "Outline")]
     mm_per_unit: Option<f64>,
     /// y of a CSV runs up, as in CAD
-    #[arg(long)]
+    #[arg(long, help_heading = "Outline")]
     y_up: bool,
     /// Largest distance of a curve from its chords, in cells; default 0.001
-    #[arg(long, value_name = "CELLS", value_parser = parse_positive)]
+    #[arg(long, value_name = "CELLS", value_parser = parse_positive, help_heading = "Outline")]
     flatness: Option<f64>,
 }
 

@@ -15,7 +15,7 @@ use taxel_core::touch::Plane;
 use crate::error::ReadError;
 use crate::formats::json::{self, WithoutNan};
 use crate::formats::named_shape::ShapeLookup;
-use crate::formats::record::{ONE_KEY, Record, wrong_outline};
+use crate::formats::record::{ONE_KEY, Record};
 
 /// The task in a line: a figure, a picture, an outline or a whole matrix, perhaps with its own sensor; or the values of a real
 /// sensor with a threshold.
@@ -83,8 +83,8 @@ impl Job {
                     None => sensor,
                 };
                 let source = record.source(&sensor, own_pitch.or(pitch_mm), lookup)?;
-                let source = source.at_pitch(own_pitch).map_err(wrong_outline)?;
-                source.check_size(&sensor).map_err(wrong_outline)?;
+                let source = source.at_pitch(own_pitch)?;
+                source.check_size(&sensor)?;
                 Ok(Self::Touch(sensor, source))
             }
             _ => Err(ReadError::new(ONE_KEY)),

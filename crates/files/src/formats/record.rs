@@ -8,7 +8,7 @@ use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use taxel_core::figure::{Figure, FigureKind};
 use taxel_core::imprint::Imprint;
-use taxel_core::outline::{Outline, OutlineError, Ring};
+use taxel_core::outline::{Outline, Ring};
 use taxel_core::parameter::number::to_decimals;
 use taxel_core::parameter::{PARAMETERS, Parameter};
 use taxel_core::picture::{PICTURE_PARAMETERS, Picture};
@@ -142,7 +142,7 @@ impl Record {
             (None, None, Some(rings)) => {
                 self.only("outline", PICTURE_PARAMETERS)?;
                 let outline = Outline::new(rings.clone(), self.pitch_of_lengths(pitch_mm)?);
-                outline.map_err(wrong_outline)?.into()
+                outline?.into()
             }
             _ => return Err(ReadError::new(ONE_KEY)),
         };
@@ -171,10 +171,6 @@ impl Record {
 enum Unit {
     Mm,
     Cells,
-}
-
-pub(crate) fn wrong_outline(error: OutlineError) -> ReadError {
-    ReadError::new(error.to_string()).of_key("outline")
 }
 
 /// The message about an object that is nothing, or several things at once.

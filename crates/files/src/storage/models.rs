@@ -141,7 +141,8 @@ impl ModelFolder {
         }
         // The folders that are still missing are made when the model is saved.
         let there = self.own.ancestors().find(|folder| folder.exists());
-        let place = there.unwrap_or(Path::new(".")).join(name.as_str());
+        let file = path.file_name().unwrap_or_default();
+        let place = there.unwrap_or(Path::new(".")).join(file);
         check_writable(&place, Existing::Replaced)
     }
 

@@ -68,7 +68,7 @@ Examples:
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = EXAMPLES,
-    override_usage = "taxel model separate [OPTIONS] <--scale|--pitch|--threshold> [MODEL|FILE|NAME]...",
+    override_usage = "taxel model separate [OPTIONS] <--scale|--pitch|--threshold> [MODEL]...",
     group = ArgGroup::new("axes").args(AXES).multiple(true).required(true),
     mut_arg("set", |set| set.value_name("MODEL|FILE|NAME").help(SET)),
 )]

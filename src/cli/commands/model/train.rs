@@ -39,7 +39,7 @@ sensor would cut off, since a cut imprint depends on where the rim is;
 
 Examples:
   taxel model train parts.jsonl --name parts
-  taxel model train parts/*.svg --pitch 2.5 --name parts
+  taxel model train parts/*.svg --pitch 2.5 --out outlines.npz
   taxel model train washer key gear --out shipped.npz
   taxel model train parts.jsonl --shard 1/4 --out part-1.npz"#;
 
