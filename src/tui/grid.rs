@@ -275,11 +275,7 @@ pub fn thumbnail_size(theme: &Theme, imprint: &Imprint) -> (u16, u16) {
 }
 
 pub fn draw_thumbnail(theme: &Theme, imprint: &Imprint, buffer: &mut Buffer, area: Rect) {
-    let size = if theme.ascii {
-        CellSize::Narrow
-    } else {
-        CellSize::Half
-    };
+    let size = theme.pick(CellSize::Narrow, CellSize::Half);
     let seen = imprint.bounds().unwrap_or(Bounds::of_taxel(0, 0));
     let grid = Grid::new(area, size, (imprint.columns(), imprint.rows()), seen);
     let style = theme.style(Role::Chosen);

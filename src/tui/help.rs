@@ -242,6 +242,6 @@ impl Page for SearchDialog {
             None => "   no match".to_owned(),
             Some((number, all)) => format!("   {number} of {all}"),
         };
-        canvas.prompt(area, "Search: ", &self.field, &found)
+        Some(canvas.prompt(area, "Search: ", &self.field, &found))
     }
 }

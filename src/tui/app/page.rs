@@ -108,9 +108,8 @@ impl<'a> Canvas<'a> {
         label: &str,
         field: &TextField,
         remark: &str,
-    ) -> Option<Position> {
-        let cursor = write::prompt(self.buffer, area, self.theme, label, field, remark);
-        Some(cursor)
+    ) -> Position {
+        write::prompt(self.buffer, area, self.theme, label, field, remark)
     }
 
     /// The same with pieces in several roles.

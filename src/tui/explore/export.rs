@@ -85,7 +85,7 @@ impl Page for FilterDialog {
             Ok(kept) => format!("   {kept}"),
             Err(_) => String::new(),
         };
-        canvas.prompt(area, "Filter: ", &self.field, &kept)
+        Some(canvas.prompt(area, "Filter: ", &self.field, &kept))
     }
 
     fn remark(&self, _keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
@@ -169,7 +169,7 @@ impl Page for ExportDialog {
             Some((table, others)) => format!("   ({table} page; {others} imprints)"),
             None => format!("   ({endings})"),
         };
-        canvas.prompt(area, self.label, &self.field, &endings)
+        Some(canvas.prompt(area, self.label, &self.field, &endings))
     }
 }
 

@@ -265,11 +265,7 @@ fn draw_angles(results: &Results, mut canvas: Canvas<'_>, area: Rect) -> Option<
         draw_no_room(canvas.theme, canvas.buffer, area);
         return None;
     };
-    let across = if canvas.theme.ascii {
-        "angle/deg"
-    } else {
-        "angle/°"
-    };
+    let across = canvas.theme.pick("angle/deg", "angle/°");
     field.draw_axes(canvas.theme, canvas.buffer, [&feature.key, across]);
     draw_curves(&field, &spread, &mut canvas);
     let at = field.character((here.degrees, here.mean))?;

@@ -259,7 +259,7 @@ fn style(theme: &Theme, share: f64) -> Style {
 }
 
 fn edge(theme: &Theme) -> char {
-    if theme.ascii { 'o' } else { '•' }
+    theme.pick('o', '•')
 }
 
 fn is_edge(imprint: &Imprint, column: u8, row: u8) -> bool {

@@ -61,7 +61,7 @@ impl Page for NameDialog {
     }
 
     fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
-        canvas.prompt(area, "Save as: ", &self.field, "")
+        Some(canvas.prompt(area, "Save as: ", &self.field, ""))
     }
 
     fn remark(&self, _keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
@@ -250,7 +250,7 @@ impl Page for CommandDialog {
             }
             text = text + gap + word;
         }
-        canvas.prompt(area, ":", &self.field, &text)
+        Some(canvas.prompt(area, ":", &self.field, &text))
     }
 
     fn draw_over(&self, theme: &Theme, buffer: &mut Buffer, body: Rect) {

@@ -84,11 +84,7 @@ impl PlotField {
 
     pub fn draw_axes(&self, theme: &Theme, buffer: &mut Buffer, [upward, right]: [&str; 2]) {
         write::text(buffer, self.area, theme, upward, Role::Key);
-        let [across, down, corner] = if theme.ascii {
-            ['-', '|', '+']
-        } else {
-            ['─', '│', '└']
-        };
+        let [across, down, corner] = theme.pick(['-', '|', '+'], ['─', '│', '└']);
         let (left, bottom) = (self.field.x - 1, self.field.bottom());
         let up = (self.field.y..bottom).map(|y| (left, y, down));
         let aside = (self.field.x..self.field.right()).map(|x| (x, bottom, across));
@@ -108,7 +104,7 @@ impl PlotField {
             let Some(at) = self.character((middle, *value)) else {
                 continue;
             };
-            let mark = if theme.ascii { '+' } else { '┤' };
+            let mark = theme.pick('+', '┤');
             write::sign(buffer, (left, at.y), mark, theme.style(Role::Quiet));
             if last != Some(at.y) {
                 let room = usize::from(left - self.area.x).saturating_sub(1);
@@ -133,7 +129,7 @@ impl PlotField {
             let Some(at) = self.character((value, middle)) else {
                 continue;
             };
-            let mark = if theme.ascii { '+' } else { '┬' };
+            let mark = theme.pick('+', '┬');
             write::sign(buffer, (at.x, bottom), mark, theme.style(Role::Quiet));
             let width = narrow(write::width(&text));
             let from = at.x.saturating_sub(width / 2);
@@ -173,11 +169,7 @@ impl PlotField {
             let (column, row) = (at.x - self.field.x, at.y - self.field.y);
             counts[usize::from(row) * width + usize::from(column)] += 1;
         }
-        let (one, to) = if theme.ascii {
-            ('.', '-')
-        } else {
-            ('·', '–')
-        };
+        let (one, to) = theme.pick(('.', '-'), ('·', '–'));
         for (at, count) in self.field.positions().zip(counts) {
             let mark = match count {
                 0 => continue,

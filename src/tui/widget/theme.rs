@@ -115,6 +115,11 @@ impl Theme {
         }
     }
 
+    /// Chooses what the terminal can show.
+    pub(in crate::tui) fn pick<T>(&self, ascii: T, other: T) -> T {
+        if self.ascii { ascii } else { other }
+    }
+
     pub fn style(&self, role: Role) -> Style {
         let style = match role {
             Role::Quiet | Role::Inactive => Style::new().add_modifier(Modifier::DIM),
@@ -173,11 +178,7 @@ impl Theme {
 
     /// Returns the characters for a coverage from 0 to 1, in five shades.
     pub fn shade(&self, coverage: f64) -> Glyphs {
-        let shades = if self.ascii {
-            ['.', ':', '+', '%', '#']
-        } else {
-            ['·', '░', '▒', '▓', '█']
-        };
+        let shades = self.pick(['.', ':', '+', '%', '#'], ['·', '░', '▒', '▓', '█']);
         let shade = match coverage {
             none if none <= 0.0 => 0,
             low if low < 0.25 => 1,
@@ -189,11 +190,7 @@ impl Theme {
     }
 
     pub fn bar(&self) -> [char; 3] {
-        if self.ascii {
-            ['#', '=', '.']
-        } else {
-            ['█', '▌', '░']
-        }
+        self.pick(['#', '=', '.'], ['█', '▌', '░'])
     }
 
     /// ASCII does not tell which of the two is.
@@ -214,15 +211,14 @@ impl Theme {
     pub fn two_taxels(&self, upper: Role, lower: Role) -> (char, Role) {
         use Role::{Active, Chosen, Hole};
         let quarters = !self.ascii && !self.console;
-        let pick = |block: char, ascii: char| if self.ascii { ascii } else { block };
         match (upper, lower) {
             _ if upper == lower => (self.taxel(upper)[0], upper),
             (Hole, Active | Chosen) if quarters => ('▙', Hole),
             (Active | Chosen, Hole) if quarters => ('▛', Hole),
             (Hole, Active | Chosen) => ('p', Hole),
             (Active | Chosen, Hole) => ('b', Hole),
-            (Chosen, _) => (pick('▀', '"'), Chosen),
-            (_, Chosen) => (pick('▄', '_'), Chosen),
+            (Chosen, _) => (self.pick('"', '▀'), Chosen),
+            (_, Chosen) => (self.pick('_', '▄'), Chosen),
             (Active, _) if quarters => ('▘', Active),
             (_, Active) if quarters => ('▖', Active),
             (Active, _) => ('\'', Active),
@@ -238,11 +234,7 @@ impl Theme {
     }
 
     pub fn more(&self) -> [char; 4] {
-        if self.ascii {
-            ['^', 'v', '<', '>']
-        } else {
-            ['↑', '↓', '←', '→']
-        }
+        self.pick(['^', 'v', '<', '>'], ['↑', '↓', '←', '→'])
     }
 
     pub fn sorted(&self, direction: SortDirection) -> char {
