@@ -44,7 +44,6 @@ pub enum Flow {
     Stay,
     Close,
     Push(Box<dyn Page>),
-    Replace(Box<dyn Page>),
     /// Closes the page and does this. If that is refused, at once or by the answer of a job, the page opens again.
     Ask(Act),
 }
@@ -171,12 +170,6 @@ pub trait Page: Any {
     /// Returns the text of the page for the line of notices. It is shown while there is no notice.
     fn remark(&self, _keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
         None
-    }
-
-    /// Returns true if the page ends above a notice of several lines instead of being covered by it: where messages
-    /// stay as long as their reason. False by default.
-    fn makes_room(&self) -> bool {
-        false
     }
 
     /// Returns an error that a notice must not hide: it is shown after the notice. None by default.

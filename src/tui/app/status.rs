@@ -191,10 +191,11 @@ fn block(app: &App, panes: &Panes, text: &str) -> Rect {
     }
 }
 
-/// Returns the place of a page, which may end above a notice of several lines.
+/// Returns the place of a page. The live page, where messages stay as long as their reason, ends above a notice of
+/// several lines instead of being covered by it.
 pub(crate) fn page_area(app: &App, panes: &Panes, page: &dyn Page) -> Rect {
     let area = panes.area(page.place());
-    if !page.makes_room() {
+    if page.context() != Context::Live {
         return area;
     }
     let over = app.top_page().filter(|top| !top.has_pane());

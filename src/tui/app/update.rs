@@ -115,10 +115,6 @@ fn on_page(app: &mut App, mut page: Box<dyn Page>, message: &Message) {
             back(app, page);
             app.pages.push(next);
         }
-        Flow::Replace(next) => {
-            page.closed(app);
-            app.pages.push(next);
-        }
         Flow::Ask(act) => from_prompt(app, page, act),
     }
 }

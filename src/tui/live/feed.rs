@@ -15,6 +15,7 @@ use std::time::Duration;
 
 use taxel_core::frame::Frame;
 use taxel_core::lock::locked;
+use taxel_core::progress::stop_if;
 use taxel_files::acquire::{
     AcquireEvent, AcquireOptions, FrameRecorder, FrameSource, Playback, RecorderError, acquire,
 };
@@ -220,11 +221,7 @@ impl Feed {
             let batch = self.take().unwrap_or_default();
             frames += batch.frames.len();
             batches.push(batch);
-            if frames < count {
-                ControlFlow::Continue(())
-            } else {
-                ControlFlow::Break(())
-            }
+            stop_if(frames >= count)
         });
         batches
     }

@@ -212,8 +212,6 @@ pub fn document(page: &Live) -> Option<Document> {
 
 #[cfg(test)]
 mod tests {
-    use taxel_core::sensor::MatrixSize;
-
     use super::*;
 
     #[test]
@@ -221,24 +219,5 @@ mod tests {
         let rounded = [0.0, 0.03, 1.0, 1.2, 45.0, 100.0, 255.0, 1e300].map(round_up);
         assert_eq!(rounded, [1.0, 0.05, 1.0, 2.0, 50.0, 100.0, 500.0, 1e300]);
         assert_eq!(nine_digits(0.1 + 0.2), 0.3);
-    }
-
-    #[test]
-    fn the_top_follows_the_values_even_if_they_are_small() {
-        let mut range = ShadeRange::default();
-        let mut top = |value: f64| {
-            let [raw, tared] = [10.0 * value, value].map(|value| {
-                Matrix::filled(MatrixSize::new(2, 1).expect("an allowed size"), value)
-            });
-            range.add([&raw, &tared]);
-            range.tared_top()
-        };
-        assert_eq!([top(0.0), top(-3.0), top(f64::NAN)], [1.0, 1.0, 1.0]);
-        assert_eq!([top(0.004), top(0.001)], [0.005, 0.005]);
-        assert_eq!([top(30.0), top(2.0)], [50.0, 50.0]);
-        let ends = [HeatLayer::Raw, HeatLayer::Tared].map(|layer| range.ends(layer, None, false));
-        assert_eq!(ends, [(-50.0, 500.0), (-5.0, 50.0)]);
-        range.begin_anew();
-        assert_eq!(range.ends(HeatLayer::Raw, None, false), (0.0, 1.0));
     }
 }

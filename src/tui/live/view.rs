@@ -101,10 +101,6 @@ impl Page for Live {
         Some((format!("! {text}"), Role::Error))
     }
 
-    fn makes_room(&self) -> bool {
-        true
-    }
-
     fn alarm(&self) -> Option<String> {
         self.trouble()
     }

@@ -24,4 +24,3 @@ mod unix;
 mod event_loop;
 
 pub use event_loop::run;
-pub use settings::TerminalSettings;
