@@ -26,15 +26,11 @@ pub(crate) struct HistoryDialog {
 }
 
 impl HistoryDialog {
-    /// `start` is what brought the oldest state, in words; None if the program began with it.
-    pub(crate) fn new(start: Option<&str>, steps: Vec<String>, present: usize) -> Self {
-        let mut rows = steps;
-        rows.insert(0, start.unwrap_or("the start").to_owned());
-        let selected = present;
+    pub(crate) fn new((rows, present): (Vec<String>, usize)) -> Self {
         Self {
             rows,
             present,
-            selected,
+            selected: present,
         }
     }
 

@@ -245,13 +245,12 @@ impl History {
         brought_by.unwrap_or_else(|| difference(&from.document, &to.document))
     }
 
+    /// What brought the oldest state and each later one, in words, and the number of the present one.
     pub fn steps(&self) -> (Vec<String>, usize) {
+        let start = self.origins[self.states[0].origin].brought_by.as_deref();
         let steps = (1..self.states.len()).map(|state| self.step(state - 1));
-        (steps.collect(), self.present)
-    }
-
-    pub fn start(&self) -> Option<&str> {
-        self.origins[self.states[0].origin].brought_by.as_deref()
+        let rows = std::iter::once(start.unwrap_or("the start").to_owned()).chain(steps);
+        (rows.collect(), self.present)
     }
 
     pub fn before(&self) -> Option<&Document> {

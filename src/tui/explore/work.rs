@@ -29,13 +29,6 @@ use crate::tui::jobs::{self, JobProgress, answer};
 use crate::tui::keys::Context;
 use crate::tui::widget::{Role, write};
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct SweepProgress {
-    pub(crate) poses: u64,
-    /// The time since the work began.
-    pub(crate) elapsed: Duration,
-}
-
 /// What helps a sweep, whose results are in memory.
 const COARSER: &str =
     "take coarser steps, or sweep it in shards on the command line (taxel sweep --shard)";
@@ -148,9 +141,9 @@ fn begin(
         stopping: false,
     });
     app.jobs.run(jobs::Slot::Sweep, move |progress| {
-        progress.counts(|app, progress| {
+        progress.counts(|app, poses, elapsed| {
             if let Some(running) = app.page_mut::<Running>() {
-                running.progress = Some(progress);
+                running.progress = Some((poses, elapsed));
             }
         });
         job(progress)
@@ -262,7 +255,8 @@ pub(crate) struct Running {
     poses: Option<u64>,
     /// What stopping leaves.
     end: &'static str,
-    progress: Option<SweepProgress>,
+    /// The poses so far, and the time that they took.
+    progress: Option<(u64, Duration)>,
     stopping: bool,
 }
 
@@ -282,7 +276,7 @@ impl Running {
         reason = "for reading"
     )]
     fn speed(&self) -> Option<String> {
-        let SweepProgress { poses, elapsed } = self.progress?;
+        let (poses, elapsed) = self.progress?;
         let rate = poses as f64 / elapsed.as_secs_f64();
         if rate <= 0.0 || !rate.is_finite() {
             return None;
@@ -323,7 +317,7 @@ impl Page for Running {
         let row = |index: usize| write::row(inner, 2 * index);
         canvas.text(row(0), &self.title, Role::Title);
         if let Some(all) = self.poses {
-            let done = self.progress.map_or(0, |progress| progress.poses);
+            let done = self.progress.map_or(0, |(poses, _)| poses);
             let percent = u128::from(done) * 100 / u128::from(all.max(1));
             let text = format!("{} of {}, {percent} %", grouped(done), counted(all, "pose"));
             canvas.text(row(1), &text, Role::Text);

@@ -34,7 +34,6 @@ use tempfile::TempDir;
 
 use crate::tui::app::unsaved::UnsavedWork;
 use crate::tui::app::{App, refuse};
-use crate::tui::explore::work::SweepProgress;
 use crate::tui::files::WriteAccess;
 use crate::tui::jobs::disk::{Disk, DiskJob, DiskWork, UnsavedJournal};
 use crate::tui::live::source::Sources;
@@ -540,7 +539,8 @@ impl Drop for Jobs {
     }
 }
 
-type Tell = Arc<dyn Fn(&mut App, SweepProgress) + Send + Sync>;
+/// Is told how much was counted, and how long it took.
+type Tell = Arc<dyn Fn(&mut App, u64, Duration) + Send + Sync>;
 
 /// What a job reports to, and from which it learns whether to go on.
 pub(crate) struct JobProgress {
@@ -568,7 +568,7 @@ impl JobProgress {
     }
 
     /// Tells the screen from now on what is counted, at most ten times a second; not in scripts.
-    pub(crate) fn counts(&self, tell: impl Fn(&mut App, SweepProgress) + Send + Sync + 'static) {
+    pub(crate) fn counts(&self, tell: impl Fn(&mut App, u64, Duration) + Send + Sync + 'static) {
         // It is set once, at the beginning of a job.
         let _ = self.count.set(Arc::new(tell));
     }
@@ -584,7 +584,7 @@ impl Progress for JobProgress {
         {
             *last = Instant::now();
             let (tell, elapsed) = (Arc::clone(tell), self.begun.elapsed());
-            self.post(move |app| tell(app, SweepProgress { poses, elapsed }));
+            self.post(move |app| tell(app, poses, elapsed));
         }
         stop_if(self.is_stopped() || self.limit.is_some_and(|most| poses > most))
     }

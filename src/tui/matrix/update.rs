@@ -68,10 +68,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) {
         Message::Sensor => app.open(FormDialog::sensor(app.history.present())),
         Message::Save => save(app, false),
         Message::Command => app.open(CommandDialog::over(Context::Matrix, app)),
-        Message::History => {
-            let (steps, present) = app.history.steps();
-            app.open(HistoryDialog::new(app.history.start(), steps, present));
-        }
+        Message::History => app.open(HistoryDialog::new(app.history.steps())),
         Message::Explain => app.open(Explain::new(app)),
         Message::Draw => draw_on(app),
         Message::Help => app.open(Help::new(app.context())),
