@@ -29,7 +29,7 @@ mod program;
 
 mod output;
 
-mod input;
+pub(crate) mod input;
 
 pub(crate) mod arguments;
 

@@ -1,5 +1,5 @@
-//! Opens and writes files for the screen: imprints in any format, shapes, drawings. Checks sources of frames before
-//! they are watched, and lists paths for completion.
+//! Opens and writes files for the screen: imprints in any format, shapes, outlines, drawings. Checks sources of frames
+//! before they are watched, and lists paths for completion.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -7,16 +7,21 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 use taxel_core::lock::locked;
+use taxel_core::parameter::Parameter;
+use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
 use taxel_files::acquire::FrameSource;
 use taxel_files::formats::file::system_reason;
 use taxel_files::formats::recording::may_be_recording;
-use taxel_files::formats::{Content, imprint_file, read_content};
+use taxel_files::formats::{Content, MAX_DRAWING_BYTES, read_content};
 use taxel_files::storage::{self, Existing, ModelChoice, Models, below_home};
 
+use crate::cli::input::outlines::OutlineFlags;
+use crate::tui::app::Document;
 use crate::tui::live::{WatchRequest, source};
 
 /// The largest size of a file that is opened, in bytes. One byte more is read at most, and the file is refused then.
-const MOST: u64 = imprint_file::MAX_BYTES as u64;
+const MOST: u64 = MAX_DRAWING_BYTES as u64;
 
 const MOST_PATHS: usize = 500;
 
@@ -37,21 +42,79 @@ pub(crate) fn watchable(
     Ok(request)
 }
 
-pub(crate) fn open(name: &str) -> Result<Content, String> {
+/// A file to open, and what it does not say itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileToOpen {
+    pub(crate) name: String,
+    pub(crate) pitch: Option<f64>,
+    pub(crate) outlines: OutlineFlags,
+}
+
+/// Opens a file for the sensor in use, which `change` is the key to change. Also returns, in words, what the file has
+/// beside its outline. A stored shape has a sensor of its own; what an imprint does not say, such as pitch and
+/// threshold, is that of the sensor.
+pub(crate) fn open(
+    file: &FileToOpen,
+    sensor: Sensor,
+    change: &str,
+) -> Result<(Document, Option<String>), String> {
+    let FileToOpen {
+        name,
+        pitch,
+        outlines,
+    } = file;
+    let on_pitch = |sensor: Sensor| match pitch {
+        Some(pitch) => sensor.with(Parameter::Pitch, *pitch).unwrap_or(sensor),
+        None => sensor,
+    };
+    let sensor = on_pitch(sensor);
+    let bytes = bytes(name)?;
+    let sentence = |reason: String| {
+        if may_be_recording(&bytes) {
+            format!("{reason}; if this is a recording, use :watch")
+        } else {
+            reason
+        }
+    };
+    if outlines.is_outline(name, &bytes) {
+        let known = pitch.or(Some(sensor.pitch_mm()).filter(|&pitch| pitch != 1.0));
+        let read = outlines.outline(&bytes, name, known);
+        let (outline, left_out) = read.map_err(|failure| sentence(failure.text))?;
+        let hint = match outline.pitch_mm() {
+            Some(_) => format!("{change} changes the sensor"),
+            None => "if it is in mm, add --unit mm --pitch MM".to_owned(),
+        };
+        let source = Source::from(outline.in_the_middle(&sensor));
+        let fits = source.check_size(&sensor);
+        fits.map_err(|error| format!("{error}; {hint}"))?;
+        return Ok((Document::touched(sensor, source), left_out));
+    }
+    outlines.refuse().map_err(|failure| failure.text)?;
+    let content = read_content(&bytes).map_err(|error| sentence(error.to_string()))?;
+    let document = match content {
+        Content::Shape(shape) => {
+            let document = Document::of_shape(&shape);
+            document.on(on_pitch(document.sensor))
+        }
+        Content::Imprint(imprint) => {
+            let sensor = sensor
+                .with(Parameter::Columns, imprint.columns().into())
+                .and_then(|sensor| sensor.with(Parameter::Rows, imprint.rows().into()))
+                .map_err(|error| error.labelled())?;
+            Document::drawn(sensor, imprint)
+        }
+    };
+    Ok((document, None))
+}
+
+fn bytes(name: &str) -> Result<Vec<u8>, String> {
     let path = below_home(name).ok_or("no home folder, so ~ cannot be used")?;
     let sentence = |error: std::io::Error| format!("cannot read: {}", system_reason(&error));
     let kind = fs::metadata(&path).map_err(sentence)?;
     if !kind.is_file() {
         return Err("not a regular file".to_owned());
     }
-    let bytes = beginning(&path).map_err(sentence)?;
-    read_content(&bytes).map_err(|error| {
-        if may_be_recording(&bytes) {
-            format!("{error}; if this is a recording, use :watch")
-        } else {
-            error.to_string()
-        }
-    })
+    beginning(&path).map_err(sentence)
 }
 
 fn beginning(path: &Path) -> std::io::Result<Vec<u8>> {

@@ -4,7 +4,7 @@ pub(super) mod content;
 
 pub(super) mod lines;
 
-pub(super) mod outlines;
+pub(crate) mod outlines;
 
 pub(super) mod recording;
 

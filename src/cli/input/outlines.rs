@@ -23,7 +23,7 @@ use crate::cli::input::shapes::Located;
 use crate::cli::{Context, note};
 
 /// How files of outlines are read.
-#[derive(Clone, Debug, Default, clap::Args)]
+#[derive(Clone, Debug, Default, PartialEq, clap::Args)]
 pub(crate) struct OutlineFlags {
     /// Unit of the points of a CSV: cells (default) or mm
     #[arg(long, value_name = "UNIT", value_parser = ["cells", "mm"], help_heading = "Outline")]
@@ -68,6 +68,12 @@ impl OutlineFlags {
         }
     }
 
+    /// Whether a file is an outline, and not an imprint.
+    pub(crate) fn is_outline(&self, name: &str, bytes: &[u8]) -> bool {
+        let of_points = self.unit.is_some() || self.y_up;
+        may_be_outline(name, bytes) && (of_points || read_imprint(bytes).is_err())
+    }
+
     /// Reads an outline. What it has beside filled shapes is named in a note.
     pub(crate) fn read(
         &self,
@@ -75,32 +81,44 @@ impl OutlineFlags {
         name: &str,
         pitch: Option<f64>,
     ) -> Result<Outline, Failure> {
+        let (outline, left_out) = self.outline(bytes, name, pitch).named(name)?;
+        if let Some(left_out) = left_out {
+            note(&format!("{name}: {left_out}"));
+        }
+        Ok(outline)
+    }
+
+    /// Reads an outline, which gets the name of the file. Also returns, in words, what it has beside filled shapes.
+    pub(crate) fn outline(
+        &self,
+        bytes: &[u8],
+        name: &str,
+        pitch: Option<f64>,
+    ) -> Result<(Outline, Option<String>), Failure> {
         let mut options = OutlineOptions {
             flatness: self.flatness.unwrap_or(FLATNESS),
             pitch_mm: pitch.unwrap_or(1.0),
             mm_per_unit: self.mm_per_unit,
             y_up: self.y_up,
         };
-        let mut read = read_outline(bytes, &options).named(name)?;
+        let mut read = read_outline(bytes, &options)?;
         if read.unit == OutlineUnit::Cells && self.unit.as_deref() == Some("mm") {
             // An SVG that says its size keeps it.
             options.mm_per_unit = Some(1.0);
-            read = read_outline(bytes, &options).named(name)?;
+            read = read_outline(bytes, &options)?;
         }
-        if !read.left_out.is_empty() {
-            let left_out = joined(read.left_out.iter().map(String::as_str), "and");
-            note(&format!("{name}: left out: {left_out}"));
-        }
+        let left_out = joined(read.left_out.iter().map(String::as_str), "and");
+        let left_out = (!left_out.is_empty()).then(|| format!("left out: {left_out}"));
         let pitch = match (read.unit, pitch) {
             (OutlineUnit::Cells, _) => None,
             (OutlineUnit::Mm, Some(pitch)) => Some(pitch),
             (OutlineUnit::Mm, None) => {
                 let text = "in mm, which needs the pitch of the sensor; give it with --pitch";
-                return Err(Failure::new(text)).named(name);
+                return Err(Failure::new(text));
             }
         };
-        let outline = Outline::new(read.rings, pitch).named(name)?;
-        Ok(outline.named(stem(name)))
+        let outline = Outline::new(read.rings, pitch)?;
+        Ok((outline.named(stem(name)), left_out))
     }
 
     /// Looks up a shape, or reads an outline, and places it with the given values on its sensor: that of the stored
@@ -121,9 +139,7 @@ impl OutlineFlags {
             Located::Input(input) => {
                 let name = input.name.clone();
                 let bytes = input.bytes(MAX_DRAWING_BYTES)?;
-                let of_points = self.unit.is_some() || self.y_up;
-                let is_imprint = || !of_points && read_imprint(&bytes).is_ok();
-                if may_be_outline(&name, &bytes) && !is_imprint() {
+                if self.is_outline(&name, &bytes) {
                     let outline = self.read(&bytes, &name, pitch)?;
                     let mut own = sensor.sensor(cx.settings.sensor.sensor)?;
                     if let Some(pitch) = pitch {

@@ -7,6 +7,7 @@ use taxel_files::formats::Name;
 
 use crate::tui::app::Document;
 use crate::tui::explore::ExploreMessage;
+use crate::tui::files::FileToOpen;
 use crate::tui::keys::{Arrow, Key};
 use crate::tui::live::LiveMessage;
 use crate::tui::recognise::RecogniseMessage;
@@ -84,7 +85,7 @@ pub enum Message {
     Copy(Copied),
     Explore(ExploreMessage),
     Recognise(RecogniseMessage),
-    OpenFile(String),
+    OpenFile(Box<FileToOpen>),
     WriteFile(String),
     Live(LiveMessage),
     /// There are answers of jobs.

@@ -3,14 +3,13 @@
 use std::path::Path;
 
 use taxel_core::description::{DESCRIPTORS, Descriptor};
-use taxel_core::imprint::Imprint;
 use taxel_core::parameter::Parameter;
 use taxel_core::parameter::number::short;
 use taxel_core::picture::Picture;
 use taxel_core::quote::shortened;
 use taxel_core::source::Source;
 use taxel_files::formats::file::has_ending;
-use taxel_files::formats::{Content, Drawing, ExportFormat, Name, value};
+use taxel_files::formats::{Drawing, ExportFormat, Name, value};
 use taxel_files::storage::{Existing, UNNAMED};
 
 use crate::tui::app::change::{
@@ -25,7 +24,7 @@ use crate::tui::app::unsaved::quit;
 use crate::tui::explain::Explain;
 use crate::tui::explore::ExploreMessage;
 use crate::tui::explore::work::explored;
-use crate::tui::files;
+use crate::tui::files::{self, FileToOpen};
 use crate::tui::form::FormDialog;
 use crate::tui::help::Help;
 use crate::tui::history::HistoryDialog;
@@ -48,7 +47,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) {
     match message {
         Message::New => empty(app),
         Message::Become(document) => replace(app, *document),
-        Message::OpenFile(name) => open_file(app, name),
+        Message::OpenFile(file) => open_file(app, *file),
         Message::WriteFile(name) => write(app, name),
         Message::Quit => quit(app),
         Message::QuitNow => app.run_state = RunState::Quit,
@@ -415,33 +414,24 @@ fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
     Ok(document.to_shape(name).write().into_bytes())
 }
 
-fn open_file(app: &mut App, name: String) {
-    app.jobs.read(format!("Opening {name}"), move |_| {
-        let content = files::open(&name);
-        answer(move |app| {
-            let document = content.and_then(|content| match content {
-                Content::Shape(shape) => Ok(Document::of_shape(&shape)),
-                Content::Imprint(imprint) => of_imprint(app, &imprint),
-            });
-            match document {
-                Ok(document) => {
-                    let opened = format!("{name} opened");
-                    let origin = DocumentOrigin::of(&document).called(&opened);
-                    begin(app, origin, document);
-                    app.history.choose(None);
-                    inform(app, opened);
-                }
-                Err(reason) => refuse(app, format!("{name}: {reason}")),
+fn open_file(app: &mut App, file: FileToOpen) {
+    let (sensor, change) = (app.history.present().sensor, app.key_of(&action::SENSOR));
+    app.jobs.read(format!("Opening {}", file.name), move |_| {
+        let opened = files::open(&file, sensor, &change);
+        answer(move |app| match opened {
+            Ok((document, left_out)) => {
+                let opened = format!("{} opened", file.name);
+                let mut origin = DocumentOrigin::of(&document).called(&opened);
+                let source = document.source.as_ref();
+                origin.proposed = source.and_then(Source::stored_name).map(str::to_owned);
+                begin(app, origin, document);
+                app.history.choose(None);
+                inform(
+                    app,
+                    opened + &left_out.map_or(String::new(), |own| format!("; {own}")),
+                );
             }
+            Err(reason) => refuse(app, format!("{}: {reason}", file.name)),
         })
     });
-}
-
-/// What an imprint file does not say, such as pitch and threshold, is taken from the sensor in use.
-fn of_imprint(app: &App, imprint: &Imprint) -> Result<Document, String> {
-    let sensor = (app.history.present().sensor)
-        .with(Parameter::Columns, imprint.columns().into())
-        .and_then(|sensor| sensor.with(Parameter::Rows, imprint.rows().into()))
-        .map_err(|error| error.labelled())?;
-    Ok(Document::drawn(sensor, *imprint))
 }

@@ -4,7 +4,7 @@
 //! figure hexagon --side 3 --angle 17     a kind, then flags as on the command line
 //! sensor --columns 32 --rows 32          only what changes
 //! explore --x0 5:5.99:0.01 --anchor centre
-//! open ~/mask.csv      write drawing.svg
+//! open ~/mask.csv      open part.svg --pitch 2.5      write drawing.svg
 //! watch run 2.csv --rows 4 --columns 5   a name, then flags
 //! load my shape                          names may contain spaces, and are never quoted
 //! cursor 3 4      move 0.5 -1      turn 15
@@ -22,8 +22,9 @@ use taxel_files::formats::Name;
 use taxel_files::storage::ModelChoice;
 
 use crate::cli::arguments::flags::{one_of, parse_number};
-use crate::cli::arguments::parameters::{FigureFlags, RangeFlags, SensorFlags};
+use crate::cli::arguments::parameters::{FigureFlags, PitchFlag, RangeFlags, SensorFlags};
 use crate::cli::commands::recognise;
+use crate::cli::input::outlines::OutlineFlags;
 use crate::naming::Terms;
 use crate::tui::app::document::Document;
 use crate::tui::app::message::{Message, Purpose};
@@ -31,6 +32,7 @@ use crate::tui::app::page::Page;
 use crate::tui::app::state::App;
 use crate::tui::explore::ExploreMessage;
 use crate::tui::explore::work::explored;
+use crate::tui::files::FileToOpen;
 use crate::tui::keys::action::Action;
 use crate::tui::keys::default_keys::PLACES;
 use crate::tui::keys::keymap::Context;
@@ -85,10 +87,14 @@ enum Colon {
         #[arg(value_name = "E", value_parser = noise)]
         noise: Option<GivenNoise>,
     },
-    /// open a shape or an imprint from a file
+    /// open a shape, an imprint or an outline from a file
     Open {
         #[arg(required = true)]
         file: Vec<String>,
+        #[command(flatten)]
+        pitch: PitchFlag,
+        #[command(flatten)]
+        outlines: OutlineFlags,
     },
     /// place a stored shape
     Picture { name: Vec<String> },
@@ -267,7 +273,19 @@ impl Colon {
             Self::Load { name } => shape(Purpose::Load, &name, Message::Load)?,
             Self::Move { dx, dy } => Message::Move(dx, dy),
             Self::Noise { noise } => named_on(app, |terms| terms.noise = noise.flatten()),
-            Self::Open { file } => Message::OpenFile(file.join(" ")),
+            Self::Open {
+                file,
+                pitch,
+                outlines,
+            } => {
+                let sensor = pitch.sensor(document.sensor);
+                let sensor = sensor.map_err(|failure| failure.text)?;
+                Message::OpenFile(Box::new(FileToOpen {
+                    name: file.join(" "),
+                    pitch: pitch.first().map(|_| sensor.pitch_mm()),
+                    outlines,
+                }))
+            }
             Self::Picture { name } => shape(Purpose::Picture, &name, Message::Picture)?,
             Self::Quit => Message::Quit,
             Self::QuitNow => Message::QuitNow,
@@ -350,9 +368,9 @@ pub fn wants_names(line: &str) -> Option<Names> {
         "delete" | "save" => Some(Names::Shapes { own: true }),
         "restore" => Some(Names::Deleted),
         "recognise" => Some(Names::Models),
-        "open" | "write" | "w" => Some(Names::Paths),
-        // The name of a source ends where its flags begin.
-        "watch" if !rest.contains("--") => Some(Names::Paths),
+        "write" | "w" => Some(Names::Paths),
+        // The name ends where the flags begin.
+        "open" | "watch" if !rest.contains("--") => Some(Names::Paths),
         _ => None,
     }
 }
