@@ -42,8 +42,10 @@ pub(super) fn unite(paths: &[Path], flatness: f64) -> Result<Vec<Ring>, ReadErro
     });
     let size = seen.width().max(seen.height());
     let mut steps = 1.0;
-    // Points are at most 10⁶ away, and a whole number is below 10¹⁸.
-    while size * steps < 1e9 && steps < 1e10 {
+    let sides = [seen.x0, seen.y0, seen.x1, seen.y1].map(f64::abs);
+    let farthest = sides.into_iter().fold(1e-6, f64::max);
+    // Whole numbers beyond that would have more digits than the points.
+    while size * steps < 1e9 && farthest * steps < 1e15 {
         steps *= 10.0;
     }
     let mut refused = None;
