@@ -121,7 +121,7 @@ impl Pipeline {
     /// How many frames have come for the tare, and how many it needs; None if none is being made.
     pub fn progress(&self) -> Option<(u64, u64)> {
         let making = self.making.as_ref()?;
-        Some((making.wanted() - making.missing(), making.wanted()))
+        Some((making.wanted - making.missing(), making.wanted))
     }
 
     /// The error that the tare lacks frames; None if none is being made.
@@ -141,12 +141,12 @@ impl Pipeline {
             return None;
         };
         if let Some(tare) = info.tare_for(&processing.view) {
-            let frames = tare.frames();
+            let frames = tare.frames;
             self.origin = Some(TareOrigin { frames, last: None });
             processing.tare = Some(tare.clone());
             return None;
         }
-        let size = own.baseline().size();
+        let size = own.baseline.size();
         Some(format!(
             "the recording's tare of {size} cells is not used; to use it, give the --crop and --turn of the recording"
         ))
@@ -191,7 +191,7 @@ impl Pipeline {
     fn set_tare(&mut self, made: TareFrames, last: &Frame) -> Result<(), FrameError> {
         let tare = made.finish()?;
         self.origin = Some(TareOrigin {
-            frames: tare.frames(),
+            frames: tare.frames,
             last: Some((last.number, last.time)),
         });
         self.processing.tare = Some(tare);
@@ -239,7 +239,7 @@ impl Pipeline {
     pub fn unknown_step(&self) -> Option<&'static str> {
         let is_noise = matches!(self.processing.rule, Some(Rule::Noise(_)));
         let tare = self.processing.tare.as_ref().filter(|_| is_noise)?;
-        tare.step().is_none().then_some(
+        tare.step.is_none().then_some(
             "all values of the tare are equal, so their step is unknown; a cell counts as active if it exceeds its \
              tare by 1 in the sensor's unit",
         )
@@ -284,7 +284,7 @@ mod tests {
         assert_eq!(add(6), (Some((1, 3)), true));
         assert_eq!(add(2), (Some((2, 3)), false));
         assert_eq!(add(2), (None, false));
-        assert_eq!(pipeline.processing.tare.map(|tare| tare.frames()), Some(3));
+        assert_eq!(pipeline.processing.tare.map(|tare| tare.frames), Some(3));
     }
 
     #[test]

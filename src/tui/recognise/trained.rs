@@ -45,7 +45,7 @@ impl TrainedModel {
             .find(choice.clone())
             .map_err(|error| error.to_string())?;
         if let FoundModel::BuiltIn { set, .. } = &found {
-            let is_same = |known: &Arc<Self>| known.model.shapes() == set.shapes();
+            let is_same = |known: &Arc<Self>| known.model.shapes() == set.shapes;
             if let Some(known) = known.filter(is_same) {
                 return Ok(known);
             }

@@ -131,13 +131,9 @@ impl ImprintCounter {
         self.tallies.push(tally);
         self.slots[slot] = hash & !INDEX | (index as u64 + 1);
         if self.tallies.len() * 2 > self.slots.len() {
-            self.grow();
+            self.slots = self.slots_for(self.slots.len() * 2);
         }
         index
-    }
-
-    fn grow(&mut self) {
-        self.slots = self.slots_for(self.slots.len() * 2);
     }
 
     /// Returns a table of `count` slots, a power of two, with the slots of all keys.

@@ -78,8 +78,6 @@ pub struct Descriptor {
     pub symbol: &'static str,
     /// A description in a few words.
     pub name: &'static str,
-    /// The description for a hole, whose taxels are inactive.
-    pub name_in_hole: &'static str,
     /// The quantity that it measures.
     pub dimension: Dimension,
     /// The numbers of a value, in its order, as suffixes of the key; a single empty one for a count or a number. A
@@ -112,7 +110,6 @@ impl Descriptor {
             key,
             symbol,
             name,
-            name_in_hole: name,
             dimension,
             parts: &[""],
             in_answer: true,
@@ -121,11 +118,6 @@ impl Descriptor {
             measure,
             exact,
         }
-    }
-
-    const fn named_in_hole(mut self, name: &'static str) -> Self {
-        self.name_in_hole = name;
-        self
     }
 
     const fn with_parts(self, parts: &'static [&'static str]) -> Self {
@@ -151,8 +143,9 @@ impl Descriptor {
     /// Returns the description for a region of a kind, in a few words.
     pub fn name_of(&self, kind: RegionKind) -> &'static str {
         match kind {
-            RegionKind::Exterior => self.name,
-            RegionKind::Hole => self.name_in_hole,
+            // The taxels of a hole are inactive.
+            RegionKind::Hole if self.key == "na" => "inactive taxels",
+            _ => self.name,
         }
     }
 
@@ -172,7 +165,6 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         |d| Value::Count(d.na),
         |d| Some(whole([d.na])),
     )
-    .named_in_hole("inactive taxels")
     .zero_of_nothing(Value::Count(0)),
     Descriptor::new(
         "nae",

@@ -115,7 +115,7 @@ impl Processing {
             contact,
             cop,
             rule: self.applied_rule(),
-            tare: tare.map_or(0, Tare::frames),
+            tare: tare.map_or(0, |tare| tare.frames),
             gain: gain.is_some(),
         })
     }

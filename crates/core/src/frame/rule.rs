@@ -103,7 +103,7 @@ impl Rule {
                 })
             }
             Self::Noise(deviations) => {
-                let tare = tare.filter(|tare| tare.frames() > 1);
+                let tare = tare.filter(|tare| tare.frames > 1);
                 let tare = tare.ok_or(FrameError::NoTare)?;
                 let factor = |index: usize| gain.map_or(1.0, |gain| gain.values()[index].abs());
                 // A margin is above 0, so a value of 0 is never active, not even in a cell whose gain is 0.

@@ -13,7 +13,8 @@ const MAD_TO_DEVIATION: f64 = 1.4826;
 /// anew. So a tare ends soon after a change of the size, too.
 #[derive(Clone, Debug)]
 pub struct TareFrames {
-    wanted: u64,
+    /// The number of frames that the tare needs.
+    pub wanted: u64,
     own: FrameSet,
     /// The last frames, if they are all of one other size.
     other: FrameSet,
@@ -52,11 +53,6 @@ impl TareFrames {
             other: FrameSet::default(),
             visible: Matrix::default(),
         }
-    }
-
-    /// Returns the number of frames that the tare needs.
-    pub fn wanted(&self) -> u64 {
-        self.wanted
     }
 
     /// Returns the number of frames that are still missing.
@@ -169,18 +165,18 @@ fn step(mut values: Vec<f64>) -> Option<f64> {
 /// The values that are subtracted from the cells, and their noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tare {
-    baseline: Matrix<f64>,
-    deviation: Matrix<f64>,
-    step: Option<f64>,
-    frames: u64,
+    /// The median of each cell, in the sensor's unit; NaN where a cell never had a value.
+    pub baseline: Matrix<f64>,
+    /// The median absolute deviation of each cell, in the sensor's unit; NaN where a cell never had a value.
+    pub deviation: Matrix<f64>,
+    /// The step of the values, in the sensor's unit: the smallest difference between two of them. None if all are
+    /// equal, so that nothing shows it; then it counts as 1, which is too coarse if the sensor sends fractions.
+    pub step: Option<f64>,
+    /// The number of frames from which the tare was made.
+    pub frames: u64,
 }
 
 impl Tare {
-    /// Returns the median of each cell, in the sensor's unit; NaN where a cell never had a value.
-    pub fn baseline(&self) -> &Matrix<f64> {
-        &self.baseline
-    }
-
     /// Rebuilds a tare from the median of each cell, the median absolute deviation of each cell, and the step of the
     /// values, all in the sensor's unit; NaN where a cell never had a value. The deviation defaults to 0. A step that
     /// is not above 0 and finite is unknown. The number of frames is at least 1; 0 counts as 1.
@@ -210,22 +206,6 @@ impl Tare {
             step: step.filter(|step| *step > 0.0 && step.is_finite()),
             frames: frames.max(1),
         })
-    }
-
-    /// Returns the median absolute deviation of each cell, in the sensor's unit; NaN where a cell never had a value.
-    pub fn median_absolute_deviation(&self) -> &Matrix<f64> {
-        &self.deviation
-    }
-
-    /// Returns the step of the values, in the sensor's unit: the smallest difference between two of them. None if all
-    /// are equal, so that nothing shows it; then it counts as 1, which is too coarse if the sensor sends fractions.
-    pub fn step(&self) -> Option<f64> {
-        self.step
-    }
-
-    /// Returns the number of frames from which the tare was made.
-    pub fn frames(&self) -> u64 {
-        self.frames
     }
 
     /// Returns how far the tared value of a cell must exceed 0 to stand out from the noise: `k` standard deviations,
@@ -266,7 +246,7 @@ mod tests {
     fn the_median_ignores_missing_values() {
         let tare = tare(&[[1.0, f64::NAN], [4.0, 7.0], [3.0, 9.0], [10.0, f64::NAN]]);
         let tare = tare.expect("four frames");
-        assert_eq!(tare.baseline().values(), [3.5, 8.0]);
+        assert_eq!(tare.baseline.values(), [3.5, 8.0]);
         // Deviations 2.5, 0.5, 0.5, 6.5 and 1, 1; the values are 1, 3, 4, 7, 9, 10.
         assert_eq!(tare.margin(0, 2.0), 2.0 * MAD_TO_DEVIATION * 1.5);
         assert_eq!(tare.margin(1, 0.1), 1.0);
@@ -277,7 +257,7 @@ mod tests {
 
     #[test]
     fn a_step_needs_two_different_values() {
-        let rest = |frames: &[[f64; 2]]| tare(frames).expect("all frames").step();
+        let rest = |frames: &[[f64; 2]]| tare(frames).expect("all frames").step;
         assert_eq!(rest(&[[7.25, 7.25], [7.25, f64::NAN]]), None);
         assert_eq!(rest(&[[7.25, 7.5], [7.25, 7.5]]), Some(0.25));
         assert_eq!(rest(&[[7.0, 7.0], [8.0, 8.0]]), Some(1.0));
@@ -317,14 +297,14 @@ mod tests {
         view.quarter_turns = 0;
         tare.add(&frame, &view).expect("it fits");
         let tare = tare.finish().expect("two frames");
-        assert_eq!(tare.baseline().values(), [3.0, 2.0, 1.0]);
+        assert_eq!(tare.baseline.values(), [3.0, 2.0, 1.0]);
     }
 
     #[test]
     fn what_is_not_a_value_is_missing() {
         let tare = tare(&[[1.0, f64::INFINITY], [f64::NEG_INFINITY, 2.0], [3.0, 1e301]]);
         let tare = tare.expect("three frames");
-        assert_eq!(tare.baseline().values(), [2.0, 2.0]);
+        assert_eq!(tare.baseline.values(), [2.0, 2.0]);
     }
 
     #[test]
@@ -332,7 +312,7 @@ mod tests {
         let part = |value: f64| Matrix::filled(MatrixSize::of(2, 1), value);
         let refused = |baseline: f64, deviation: f64, step: f64| {
             let tare = Tare::from_parts(part(baseline), Some(part(deviation)), Some(step), 0);
-            tare.map(|tare| tare.frames())
+            tare.map(|tare| tare.frames)
                 .map_err(|error| error.to_string())
         };
         assert_eq!(refused(f64::NAN, f64::NAN, 0.1), Ok(1));
@@ -343,7 +323,7 @@ mod tests {
         let deviation = "tare_spread: -5 is out of range (allowed: 0 or more)";
         assert_eq!(refused(0.0, -5.0, 1.0), message(deviation));
         let unknown = Tare::from_parts(part(0.0), None, Some(f64::NAN), 1);
-        assert_eq!(unknown.expect("it fits").step(), None);
+        assert_eq!(unknown.expect("it fits").step, None);
     }
 
     #[test]
@@ -361,7 +341,7 @@ mod tests {
                 let _ = first.add(&Frame::new(FrameSize::of(side, side)), &View::default());
             }
             let tare = first.finish().expect("complete");
-            let found = (tare.frames(), tare.baseline().columns());
+            let found = (tare.frames, tare.baseline.columns());
             assert_eq!(found, (wanted, columns), "{sides:?}");
         }
     }

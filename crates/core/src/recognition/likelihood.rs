@@ -98,12 +98,6 @@ impl Model {
         own.map(bounds).collect()
     }
 
-    /// Returns the index of the first shape of the set none of whose imprints fits on a matrix of this size.
-    pub fn first_too_large(&self, size: MatrixSize) -> Option<usize> {
-        let touches = self.touches_on(size);
-        touches.iter().position(|&touches| touches == 0)
-    }
-
     /// Returns, for each shape of the set, how many of its poses leave an imprint that does not fit on a matrix of
     /// this size. [`Self::recognition_rate`] draws no such touches.
     pub fn poses_too_large(&self, size: MatrixSize) -> Vec<u64> {

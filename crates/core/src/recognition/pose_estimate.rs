@@ -265,7 +265,7 @@ mod tests {
     fn the_poses_of_an_imprint_agree_with_its_count_and_with_a_sum_by_hand() {
         let steps = GridSteps::of(10, "0:355:5");
         let training = Training::fitting(equal_figures(), steps).expect("they fit");
-        let grids = training.grids().to_vec();
+        let grids = training.grids.to_vec();
         let model = training.run().expect("not stopped");
         for shape in [0, 1, 2, 5] {
             let grid = &grids[shape];
@@ -310,7 +310,7 @@ mod tests {
     #[test]
     fn an_imprint_between_the_poses_of_the_model_has_a_pose() {
         let training = |steps| Training::fitting(equal_figures(), steps).expect("they fit");
-        let grid = training(GridSteps::of(20, "0:359:1")).grids()[1].clone();
+        let grid = training(GridSteps::of(20, "0:359:1")).grids[1].clone();
         let model = training(GridSteps::of(2, "0:345:15"))
             .run()
             .expect("not stopped");
@@ -339,7 +339,7 @@ mod tests {
     fn a_shard_counts_its_own_poses_only() {
         let steps = GridSteps::of(4, "0:330:30");
         let training = Training::fitting(equal_figures(), steps).expect("they fit");
-        let grid = training.grids()[1].clone();
+        let grid = training.grids[1].clone();
         let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(21));
         let poses = |model: &Model| {
             let held: u64 = model.counts_of(&imprint).iter().map(own_poses).sum();
@@ -373,7 +373,7 @@ mod tests {
         let mut shapes = equal_figures();
         shapes.retain(|shape| shape.name == "heptagon");
         let training = Training::fitting(shapes, steps).expect("it fits");
-        let grid = training.grids()[0].clone();
+        let grid = training.grids[0].clone();
         let model = training.run().expect("not stopped");
         let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(21));
         let pose = model.pose_of(0, &imprint, &ToTheEnd).expect("it leaves it");

@@ -206,7 +206,7 @@ impl Separation {
     ) -> Result<SeparationPoint, TrainingError> {
         let scale = axis.scale(value);
         let training = self.training(scale, threshold)?;
-        let side = training.grids()[0].sensor().side();
+        let side = training.grids[0].sensor().side();
         let limit = Evaluation::of(&training.with_progress(progress).run()?);
         Ok(SeparationPoint {
             value,
@@ -362,7 +362,7 @@ mod tests {
         for positions in [1, 5, 20, 25] {
             let steps = GridSteps::of(positions, "0:350:10");
             let training = Training::fitting(shapes.clone(), steps).expect("they fit");
-            let side = training.grids()[0].sensor().side();
+            let side = training.grids[0].sensor().side();
             assert_eq!(side, 16);
             let limit = Evaluation::of(&training.run().expect("not stopped"));
             let mut separation = Separation::new(shapes.clone()).expect("a set");
@@ -475,7 +475,7 @@ mod tests {
             }
             let separation = coarse(vec![NamedShape::new("corner", source)]);
             let training = separation.training(scale, 0.5).expect("it fits");
-            *training.grids()[0].ranges()
+            *training.grids[0].ranges()
         };
         assert_eq!(ranges(2.0, 1.5), ranges(1.0, 3.0));
         assert_eq!(ranges(2.0, 1.5)[Axis::ZoomX], DecimalRange::whole(3));

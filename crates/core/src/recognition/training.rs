@@ -43,8 +43,10 @@ pub const LEAST_SIDE: u8 = 16;
 #[derive(Clone)]
 #[must_use = "nothing is trained before `run`"]
 pub struct Training<'a> {
-    grids: Vec<PoseGrid>,
-    shapes: Vec<NamedShape>,
+    /// The grid of poses of each shape, in the order of the set.
+    pub grids: Vec<PoseGrid>,
+    /// The shapes of the set, in order.
+    pub shapes: Vec<NamedShape>,
     allow_cut: bool,
     shard: Shard,
     progress: &'a dyn Progress,
@@ -162,16 +164,6 @@ impl<'a> Training<'a> {
     /// Returns the number of poses of all shapes together in this shard.
     pub fn poses(&self) -> u64 {
         self.grids.iter().map(|grid| self.shard.poses(grid)).sum()
-    }
-
-    /// Returns the shapes of the set, in order.
-    pub fn shapes(&self) -> &[NamedShape] {
-        &self.shapes
-    }
-
-    /// Returns the grid of poses of each shape, in the order of the set.
-    pub fn grids(&self) -> &[PoseGrid] {
-        &self.grids
     }
 
     /// Returns the head of the model, as if the sensor cut nothing off.
@@ -411,7 +403,7 @@ mod tests {
     fn equal_figures_cover_thirty_cells_and_are_hard_to_tell_apart() {
         let steps = GridSteps::of(10, "0:355:5");
         let training = Training::fitting(equal_figures(), steps).expect("they fit");
-        let grid = &training.grids()[0];
+        let grid = &training.grids[0];
         assert_eq!(grid.sensor().columns(), 16);
         assert_eq!(grid.ranges()[Axis::X0].to_string(), "7:7.9:0.1");
         assert_eq!(grid.ranges()[Axis::Angle].to_string(), "0:355:5");
@@ -421,7 +413,7 @@ mod tests {
         assert!((0.3..0.35).contains(&error), "{error}");
         for shape in model.shapes() {
             let grid = Training::fitting(vec![shape.clone()], steps).expect("it fits");
-            let grid = &grid.grids()[0];
+            let grid = &grid.grids[0];
             let mut plane = crate::touch::Plane::new(*grid.sensor());
             plane.touch(&grid.placed(0));
             let area: f64 = plane.coverages().values().iter().sum();
@@ -445,7 +437,7 @@ mod tests {
             let shapes = vec![NamedShape::new("disc", disc.expect("in range"))];
             let steps = GridSteps::of(positions, "0");
             let training = Training::fitting(shapes, steps).expect("it fits");
-            let grid = &training.grids()[0];
+            let grid = &training.grids[0];
             let range = grid.ranges()[Axis::X0].to_string();
             (grid.sensor().side(), range)
         };

@@ -203,7 +203,7 @@ impl RandomTouches {
 
     /// Returns the number of touches.
     pub fn count(&self) -> u64 {
-        let foreign = self.foreign.as_ref().map_or(0, |own| own.grids().len());
+        let foreign = self.foreign.as_ref().map_or(0, |own| own.grids.len());
         self.per_shape
             .saturating_mul((self.known.len() + foreign) as u64)
     }
@@ -237,9 +237,9 @@ impl RandomTouches {
         };
         add(&mut trial.known, &self.known)?;
         if let Some(foreign) = &self.foreign {
-            let names = foreign.shapes().iter().map(|shape| shape.name.clone());
+            let names = foreign.shapes.iter().map(|shape| shape.name.clone());
             trial.foreign.labels = names.collect();
-            add(&mut trial.foreign, foreign.grids())?;
+            add(&mut trial.foreign, &foreign.grids)?;
         }
         Some(trial)
     }

@@ -456,7 +456,7 @@ impl FoundModel {
     pub fn shapes(&self) -> &[NamedShape] {
         match self {
             Self::Read(model) => model.shapes(),
-            Self::BuiltIn { set, .. } => set.shapes(),
+            Self::BuiltIn { set, .. } => &set.shapes,
         }
     }
 
@@ -464,7 +464,7 @@ impl FoundModel {
     pub fn sensor(&self) -> Sensor {
         match self {
             Self::Read(model) => *model.sensor(),
-            Self::BuiltIn { set, .. } => *set.grids()[0].sensor(),
+            Self::BuiltIn { set, .. } => *set.grids[0].sensor(),
         }
     }
 
@@ -482,7 +482,7 @@ impl FoundModel {
         };
         let memory = MemoryGuard::new(None, "train a model of fewer shapes (taxel model train)");
         let parts = memory.limit(progress, |progress| {
-            let shapes = set.shapes().iter();
+            let shapes = set.shapes.iter();
             let parts = shapes.map(|shape| part(shape, steps, cache.as_ref(), progress));
             parts.collect::<Result<Vec<Model>, TrainingError>>()
         })?;
@@ -737,16 +737,16 @@ mod tests {
         let cache = ModelCache::in_folder("cache");
         let whole = training(4.0);
         let of = |shapes: &[NamedShape], anchor| {
-            let grid = &whole.grids()[0];
+            let grid = &whole.grids[0];
             let other = Training::new(shapes.to_vec(), *grid.sensor(), anchor, *grid.ranges());
             other.expect("a set")
         };
-        let mut heavier = whole.shapes().to_vec();
+        let mut heavier = whole.shapes.to_vec();
         heavier[0].weight = 3;
         for (index, other) in [
             training(4.1),
-            of(&whole.shapes()[..1], Anchor::Centre),
-            of(whole.shapes(), Anchor::Corner),
+            of(&whole.shapes[..1], Anchor::Centre),
+            of(&whole.shapes, Anchor::Corner),
             of(&heavier, Anchor::Centre),
             whole.clone().with_shard("1/2".parse().expect("a shard")),
         ]

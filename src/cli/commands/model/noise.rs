@@ -91,12 +91,13 @@ impl NoiseFlags {
         cx: &Context,
     ) -> Result<NoisyRates, Failure> {
         let size = self.size(model.sensor());
-        if let Some(shape) = model.first_too_large(size) {
+        let too_large = model.poses_too_large(size);
+        if let Some(shape) = too_large.iter().position(|&own| own == model.poses()) {
             let text = format!("none of its imprints fits on {size} taxels");
             return Err(Failure::new(text)).named(&model.shapes()[shape].name);
         }
         if !asked.table.quiet {
-            note_left_out(model, size, cx);
+            note_left_out(model, size, &too_large, cx);
         }
         let (each, seed) = (self.touches.unwrap_or(1000), asked.seed.unwrap_or_default());
         let given = asked.known();
@@ -137,10 +138,10 @@ impl NoiseFlags {
 }
 
 /// Names the shapes whose imprints do not all fit on the matrix.
-fn note_left_out(model: &Model, size: MatrixSize, cx: &Context) {
-    let shapes = model.shapes().iter().zip(model.poses_too_large(size));
-    let shapes = shapes.filter(|(_, poses)| *poses > 0);
-    let shapes = shapes.map(|(shape, poses)| {
+fn note_left_out(model: &Model, size: MatrixSize, too_large: &[u64], cx: &Context) {
+    let shapes = model.shapes().iter().zip(too_large);
+    let shapes = shapes.filter(|(_, poses)| **poses > 0);
+    let shapes = shapes.map(|(shape, &poses)| {
         let part = percent(share(poses.into(), model.poses().into()));
         format!("{part} of the poses of {}", shape.name)
     });

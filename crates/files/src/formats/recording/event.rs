@@ -178,7 +178,7 @@ impl ChannelInfo {
     /// Returns the recording's own tare, if it has the size of the frames in that view.
     pub fn tare_for(&self, view: &View) -> Option<&Tare> {
         let seen = view.size(self.size?).ok()?;
-        let fits = |tare: &&Tare| FrameSize::from(tare.baseline().size()) == seen;
+        let fits = |tare: &&Tare| FrameSize::from(tare.baseline.size()) == seen;
         self.tare.as_ref().filter(fits)
     }
 

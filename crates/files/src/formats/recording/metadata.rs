@@ -193,10 +193,10 @@ impl RecordingMetadata {
             pitch_mm: pitch(self.pitch_mm),
             seconds_per_frame: self.seconds_per_frame.and_then(step),
             rule: self.rule,
-            tare_frames: tare.map(Tare::frames),
-            tare: tare.map(|tare| rows(tare.baseline())),
-            tare_spread: tare.map(|tare| rows(tare.median_absolute_deviation())),
-            tare_step: tare.and_then(Tare::step),
+            tare_frames: tare.map(|tare| tare.frames),
+            tare: tare.map(|tare| rows(&tare.baseline)),
+            tare_spread: tare.map(|tare| rows(&tare.deviation)),
+            tare_step: tare.and_then(|tare| tare.step),
             marks: self.marks.clone(),
             ended: self.ended,
             ended_by: self.ended_by.clone(),
@@ -265,7 +265,7 @@ mod tests {
             let read = read.expect("a right one");
             // NaN is not equal to itself.
             assert_eq!(
-                read.tare.map(|tare| rows(tare.baseline())),
+                read.tare.map(|tare| rows(&tare.baseline)),
                 Some(vec![vec![Some(0.5), None]])
             );
             assert_eq!(
@@ -309,10 +309,7 @@ mod tests {
             let text = format!("{{\"format\":\"{FORMAT}\",{key}\"tare\":[[0.5,2]]}}");
             let read = RecordingMetadata::read(text.as_bytes()).expect("metadata");
             let tare = read.expect("a right one").tare.expect("a tare");
-            assert_eq!(
-                (tare.frames(), tare.baseline().values()),
-                (1, &[0.5, 2.0][..])
-            );
+            assert_eq!((tare.frames, tare.baseline.values()), (1, &[0.5, 2.0][..]));
         }
     }
 
