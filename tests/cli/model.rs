@@ -21,10 +21,6 @@ const RECTANGLES: &str = "{\"name\":\"a\",\"figure\":\"rectangle\",\"length\":6,
      {\"name\":\"c\",\"figure\":\"rectangle\",\"length\":6.2,\"width\":3}\n\
      {\"name\":\"d\",\"figure\":\"rectangle\",\"length\":4.2,\"width\":4.2}\n";
 
-/// The grid of the published numbers.
-const PUBLISHED: &str = "--x0 10:10.99:0.01 --y0 10:10.99:0.01 --angle 0:359:1 --anchor corner \
-                         --columns 32 --rows 32 --quiet";
-
 /// A coarse grid, for a quick training.
 pub(crate) const COARSE: &str = "--positions 10 --angle 0:355:5 --quiet";
 
@@ -155,41 +151,12 @@ fn models_are_trained_shown_and_evaluated_in_every_form() {
 }
 
 #[test]
-fn four_rectangles_on_the_command_line_are_confused_as_published() {
-    let place = Place::new();
-    place.done(&format!(
-        "model train rectangles.jsonl {PUBLISHED} --out s4.npz"
-    ));
-    let limit = place.json("model confusion s4.npz --json");
-    let count = |key: &str| limit[key].as_u64().expect("a count");
-    assert_eq!(
-        ["touches", "right", "certain", "tied"].map(count),
-        [14_400_000, 10_498_796, 4_821_044, 524]
-    );
-    assert_eq!(
-        limit["confusion"].to_string(),
-        "[[1642740,650164,1307096,0],[261984,2673920,664096,0],[572156,445708,2582136,0],[0,0,0,3600000]]"
-    );
-    let bits = limit["information_bits"].as_f64().expect("bits");
-    assert_eq!(format!("{bits:.4}"), "1.2066");
-}
-
-#[test]
-fn no_evaluation_exceeds_the_limit() {
+fn each_flag_of_an_evaluation_counts() {
     let place = Place::with_model();
     let right = |asked: &str| {
         let answer = place.json(&format!("model confusion r --json {asked}"));
         answer["right"].as_u64().expect("a count")
     };
-    let limit = right("");
-    for asked in [
-        "--given na,p",
-        "--classifier z",
-        "--classifier knn",
-        "--classifier template",
-    ] {
-        assert!(right(asked) <= limit, "{asked}");
-    }
     assert!(right("--given cg_cd --round cg_cd=0.1") < right("--given cg_cd"));
     assert!(right("--classifier z --given na") < right("--classifier z"));
     let all = place.json("model confusion r --classifier all --json");

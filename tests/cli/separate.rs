@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::model::{COARSE, Place};
+use super::model::Place;
 
 #[test]
 fn sizes_and_thresholds_are_answered_in_every_form() {
@@ -31,53 +31,18 @@ fn sizes_and_thresholds_are_answered_in_every_form() {
 }
 
 #[test]
-fn the_error_falls_with_the_size_as_in_separate_trainings() {
+fn a_model_provides_its_shapes_and_its_grid() {
     let place = Place::with_model();
-    let line =
-        "model separate rectangles.jsonl --scale 1:2:0.5 --positions 10 --angle 0:355:5 --quiet";
-    let answer = place.json(&format!("{line} --json"));
-    // At 1 it equals a training of the set, at 2 a training of shapes that are twice as large.
-    place.write("twice.jsonl", "{\"name\":\"a\",\"figure\":\"rectangle\",\"length\":12,\"width\":6}\n{\"name\":\"b\",\"figure\":\"rectangle\",\"length\":12,\"width\":6.4}\n{\"name\":\"c\",\"figure\":\"rectangle\",\"length\":12.4,\"width\":6}\n{\"name\":\"d\",\"figure\":\"rectangle\",\"length\":8.4,\"width\":8.4}\n");
-    place.done(&format!("model train twice.jsonl {COARSE} --out twice.npz"));
-    for (file, point) in [("m.npz", 0), ("twice.npz", 2)] {
-        let limit = place.json(&format!("model confusion {file} --json"));
-        for key in ["touches", "right", "certain", "keys", "error"] {
-            assert_eq!(answer["points"][point][key], limit[key], "{file} {key}");
-        }
-    }
-    // A model provides its shapes and its grid.
-    let model = place.json("model separate m.npz --scale 1:2:0.5 --quiet --json");
-    assert_eq!(model["points"], answer["points"]);
+    let points =
+        |line: &str| place.json(&format!("model separate {line} --quiet --json"))["points"].take();
+    let grid = "--positions 10 --angle 0:355:5";
+    let scales = points(&format!("rectangles.jsonl --scale 1:2:0.5 {grid}"));
+    assert_eq!(points("m.npz --scale 1:2:0.5"), scales);
     // Half the pitch equals twice the scale.
-    let grid = "--positions 10 --angle 0:355:5 --quiet --json";
-    let pitches = place.json(&format!("model separate r --pitch 0.5:1:0.5 {grid}"));
+    let pitches = points(&format!("r --pitch 0.5:1:0.5 {grid}"));
     for key in ["scale", "right", "certain"] {
-        assert_eq!(pitches["points"][1][key], answer["points"][2][key], "{key}");
+        assert_eq!(pitches[1][key], scales[2][key], "{key}");
     }
-}
-
-#[test]
-fn the_smallest_size_that_reaches_an_error_is_found() {
-    let place = Place::new();
-    let grid = "--positions 5 --angle 0:350:10 --quiet --json";
-    let line = format!("model separate rectangles.jsonl --scale 1:3:0.5 {grid}");
-    let answer = place.json(&format!("{line} --want 0.1"));
-    let found = &answer["want"][0];
-    let scale = found["smallest"]["scale"].as_f64().expect("a scale");
-    let error = found["smallest"]["error"].as_f64().expect("an error");
-    assert!(error <= 0.1 && scale > 1.0, "{answer}");
-    assert_eq!(found["step"].as_f64(), Some(0.05));
-    // The scale before it does not reach the error.
-    let before = scale - 0.05;
-    let before = place.json(&format!(
-        "model separate rectangles.jsonl --scale {before:.2} {grid}"
-    ));
-    assert!(
-        before["points"][0]["error"].as_f64() > Some(0.1),
-        "{before}"
-    );
-    let never = place.json(&format!("{line} --want 0"));
-    assert!(never["want"][0]["smallest"].is_null());
 }
 
 #[test]

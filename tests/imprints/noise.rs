@@ -159,34 +159,6 @@ fn touches_that_contradict_each_other_are_weighed_not_ruled_out() {
 }
 
 #[test]
-fn both_shapes_stay_possible_if_each_explains_only_one_of_two_touches() {
-    let sensor = sensor(16);
-    let shape = |name: &str, width: f64| {
-        let figure = Figure::rectangle(3.0, width).on(&sensor);
-        NamedShape::new(name, figure.expect("in range"))
-    };
-    let shapes = vec![shape("bar", 1.0), shape("block", 2.0).weighted(3)];
-    let model = train(shapes, 16, ranges("5", "5", "0"));
-    let read = |text: &str| text.parse::<Imprint>().expect("an imprint");
-    let bar = read(".....\n.###.\n.....\n.....\n.....");
-    let block = read(".....\n.###.\n.###.\n.....\n.....");
-    for flip in [1e-9, 1e-6, 0.001, 0.01] {
-        let noise = Noise::new(flip).expect("in range");
-        let touches = [bar, block];
-        let answer = model.recognise(Evidence::of(&touches).under(Some(&noise)));
-        assert_eq!(answer.ranking.len(), 2, "{flip}");
-        let expected = of_several(&model, &touches, flip);
-        for (shape, found) in answer.ranking {
-            let expected = expected[shape];
-            assert!(
-                (found - expected).abs() < 1e-6,
-                "{flip}: {found} {expected}"
-            );
-        }
-    }
-}
-
-#[test]
 fn shapes_with_a_large_weight_count_at_large_distances() {
     let sensor = sensor(16);
     let shape = |name: &str, width: f64| {

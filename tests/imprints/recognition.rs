@@ -8,7 +8,7 @@ use taxel_core::progress::ToTheEnd;
 use taxel_core::recognition::{
     AnswerState, Classifier, ClassifierSettings, Evaluation, Evidence, GivenDescriptors,
     ImprintKey, KeyTable, Model, ModelError, ModelHead, ModelMerge, NamedShape, Noise, Rounding,
-    SearchMethod, ShapeCount, ShapeDescriptor, SizeAxis, Training, TrainingError,
+    ShapeCount, ShapeDescriptor, Training, TrainingError,
 };
 use taxel_core::sweep::{Shard, ShardOrderError};
 
@@ -293,19 +293,6 @@ fn merged_shards_equal_the_whole_model() {
     let merged = merge.finish().expect("all three");
     assert_eq!((merged.poses(), merged.cut()), (whole.poses(), whole.cut()));
     assert_eq!(Evaluation::of(&merged), Evaluation::of(&whole));
-}
-
-#[test]
-fn a_model_does_not_depend_on_threads() {
-    let (shapes, ranges) = small();
-    let with = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.expect("threads")
-            .install(|| train(shapes.clone(), 16, ranges))
-    };
-    let (one, three) = (with(1), with(3));
-    assert_eq!(Evaluation::of(&one), Evaluation::of(&three));
-    assert!((0..one.keys().len()).all(|key| one.counts(key) == three.counts(key)));
 }
 
 #[test]
@@ -645,17 +632,4 @@ fn sets_and_descriptors_that_make_no_sense_are_refused() {
     for text in ["cg_cd", "cg_cd=0", "cg_cd=-1", "cg_cd=x", "cg_cd=nan"] {
         assert!(text.parse::<Rounding>().is_err(), "{text}");
     }
-}
-
-#[test]
-fn names_of_classifiers_states_and_methods_read_back() {
-    fn is_read<T: Copy + ToString + std::str::FromStr + PartialEq>(all: &[T]) -> bool {
-        all.iter()
-            .all(|one| one.to_string().parse().ok() == Some(*one))
-    }
-    assert!(is_read(Classifier::ALL) && is_read(AnswerState::ALL));
-    assert!(is_read(SearchMethod::ALL) && is_read(SizeAxis::ALL));
-    assert!(is_read(&ShapeDescriptor::all().collect::<Vec<_>>()));
-    let rounding: Rounding = "cg_cd=0.01".parse().expect("a step");
-    assert_eq!(rounding.to_string(), "cg_cd=0.01");
 }

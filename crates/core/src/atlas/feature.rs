@@ -186,18 +186,4 @@ mod tests {
             assert_eq!(all, single.collect::<Vec<_>>(), "{rows}");
         }
     }
-
-    #[test]
-    fn features_are_the_descriptors_and_their_parts_in_order() {
-        use crate::atlas::features;
-        let keys: Vec<&str> = features()
-            .iter()
-            .map(|feature| feature.key.as_str())
-            .collect();
-        assert_eq!(
-            keys[..8],
-            ["na", "nae", "ce", "num_x", "num_y", "cg_x", "cg_y", "p"]
-        );
-        assert_eq!(keys.len(), 23);
-    }
 }

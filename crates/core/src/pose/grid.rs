@@ -566,61 +566,16 @@ mod tests {
     }
 
     #[test]
-    fn a_shape_is_placed_by_its_corner_or_its_centre() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::prelude::*;
-        // 6 × 3, with its corner at 5, 5 before it is turned.
-        let rectangle = Source::Figure(Figure::default_of(
-            FigureKind::Rectangle,
-            &Sensor::default(),
-        ));
-        let grid = PoseGrid::new(
-            rectangle,
-            Sensor::default(),
-            Anchor::Corner,
-            Ranges::default(),
-        )?;
-        assert_eq!(grid.centre(0), [8.0, 6.5]);
-        // 6 × 3, with its centre at 5, 5.
-        let rectangle = Source::Figure(Figure::default_of(
-            FigureKind::Rectangle,
-            &Sensor::default(),
-        ));
-        let grid = PoseGrid::new(
-            rectangle,
-            Sensor::default(),
-            Anchor::Centre,
-            Ranges::default(),
-        )?;
-        let first = grid.source_at(grid.pose(0))?;
-        assert_eq!(
-            (first.get(Parameter::X0), first.get(Parameter::Y0)),
-            (Some(2.0), Some(3.5))
-        );
-        Ok(())
-    }
-
-    #[test]
-    fn poses_that_reach_beyond_the_sensor_are_counted() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::prelude::*;
-        let sensor = Sensor::default();
-        let bar = Figure::rectangle(6.0, 2.0).on(&sensor)?;
-        let ranges = Ranges::default().with(Axis::Angle, "0:90:90".parse()?);
-        let grid = PoseGrid::new(bar.into(), sensor, Anchor::Corner, ranges)?;
-        let reach = grid.reach().expect("it has a boundary");
-        // Upright it reaches from (0, 0) to (6, 2); turned about (3, 1), from (2, −2) to (4, 4).
-        assert_eq!(
-            (reach.left, reach.top, reach.right, reach.bottom),
-            (0.0, -2.0, 6.0, 4.0)
-        );
-        let sensor = Sensor::new(8, 8)?;
-        let square = Figure::rectangle(6.0, 6.0).on(&sensor)?;
-        let ranges = Ranges::default()
-            .with(Axis::X0, "0:3:0.5".parse()?)
-            .with(Axis::Y0, "1:2:1".parse()?)
-            .with(Axis::Angle, "0".parse()?);
-        let grid = PoseGrid::new(square.into(), sensor, Anchor::Corner, ranges)?;
-        // x0 of 2.5 and 3, at both values of y0.
-        assert_eq!(grid.poses_beyond_sensor(), 4);
-        Ok(())
+    fn a_shape_is_placed_by_its_corner_or_its_centre() {
+        // 6 × 3, with its corner at 5, 5 before it is turned, then with its centre there.
+        let [corner, centre] = [Anchor::Corner, Anchor::Centre].map(|anchor| {
+            let sensor = Sensor::default();
+            let rectangle = Figure::default_of(FigureKind::Rectangle, &sensor).into();
+            PoseGrid::new(rectangle, sensor, anchor, Ranges::default()).expect("in range")
+        });
+        assert_eq!(corner.centre(0), [8.0, 6.5]);
+        let first = centre.source_at(centre.pose(0)).expect("in range");
+        let place = [Parameter::X0, Parameter::Y0].map(|own| first.get(own));
+        assert_eq!(place, [Some(2.0), Some(3.5)]);
     }
 }

@@ -588,18 +588,4 @@ mod tests {
         let other = other.expect("it fits").run().expect("not stopped");
         assert!(Model::united(&[parts[0].clone(), other]).is_err());
     }
-
-    #[test]
-    fn the_most_frequent_imprint_of_a_bar_is_the_bar() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::prelude::*;
-        use crate::recognition::{NamedShape, Training};
-        let sensor = Sensor::default();
-        let bar = NamedShape::new("bar", Figure::rectangle(4.0, 2.0).on(&sensor)?);
-        let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
-        let model = Training::new([bar], sensor, Anchor::Centre, ranges)?.run()?;
-        let most = (0..model.keys().len()).max_by_key(|&key| model.most_frequent(key).1);
-        let most = most.and_then(|key| model.keys().imprint(key));
-        assert_eq!(most, Some("####\n####".parse()?));
-        Ok(())
-    }
 }

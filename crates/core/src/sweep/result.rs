@@ -528,23 +528,4 @@ mod tests {
         let ids = stopped.ids(PoseIndex::new([0, 0, 37, 0, 0]), 0..100, 0..100);
         assert!(ids.contains(&None));
     }
-
-    #[test]
-    fn neighbouring_poses_have_the_numbers_of_their_imprints()
-    -> Result<(), Box<dyn std::error::Error>> {
-        use crate::prelude::*;
-        let square = Source::Figure(Figure::default_of(
-            FigureKind::Rectangle,
-            &Sensor::default(),
-        ));
-        let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
-        let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
-        let result = Sweep::new(&grid).run();
-        // At x0 5.5 the columns at both ends are covered by half, and active.
-        assert_eq!(
-            result.ids(PoseIndex::new([0; 5]), 49..52, 0..1),
-            [Some(0), Some(1), Some(2)]
-        );
-        Ok(())
-    }
 }
