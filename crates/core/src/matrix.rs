@@ -63,13 +63,16 @@ impl<T: Copy> Matrix<T> {
         &mut self.values
     }
 
-    /// Returns the cells whose value satisfies a condition.
-    pub fn cells_where(&self, holds: impl Fn(T) -> bool) -> Imprint {
+    /// Returns the cells that satisfy a condition on their index, row by row, and their value.
+    pub fn cells_where(&self, holds: impl Fn(usize, T) -> bool) -> Imprint {
+        let columns = usize::from(self.columns());
         let mut cells = Imprint::empty(self.size);
-        for row in 0..self.rows() {
-            for (column, &value) in (0..self.columns()).zip(self.row(row)) {
-                cells.set(column, row, holds(value));
+        for (row, line) in self.values.chunks(columns).enumerate() {
+            let mut word = 0;
+            for (column, &value) in line.iter().enumerate() {
+                word |= u64::from(holds(row * columns + column, value)) << column;
             }
+            cells.set_word(row, word);
         }
         cells
     }

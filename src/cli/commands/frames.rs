@@ -752,7 +752,7 @@ impl Answering<'_> {
         if let Some(content) = kept.keep(drawn, shape, &self.cx.shelf, &mut lines)? {
             return self.write(content);
         }
-        let dead = processed.tared.cells_where(f64::is_nan);
+        let dead = processed.tared.cells_where(|_, value| value.is_nan());
         if self.asked.json {
             for note in &lines[titles.len()..] {
                 self.cx.note(note);
@@ -843,7 +843,7 @@ impl Answering<'_> {
                 (Some(label), Some(imprint)) => {
                     let label = label.to_string();
                     let own = folded(&label);
-                    let dead = processed.tared.cells_where(f64::is_nan);
+                    let dead = processed.tared.cells_where(|_, value| value.is_nan());
                     let answer = namer.terms.answer(&namer.model, &[imprint], Some(&dead));
                     trial.add(&label, |name| folded(name) == own, &answer);
                 }
@@ -886,7 +886,7 @@ impl Answering<'_> {
         let mut counter: Option<FlipCounter> = None;
         self.each(recording, index, pipeline, |_, processed| {
             let counter = counter.get_or_insert_with(|| {
-                FlipCounter::new(processed.raw.cells_where(|value| !value.is_nan()))
+                FlipCounter::new(processed.raw.cells_where(|_, value| !value.is_nan()))
             });
             if let Some(imprint) = &processed.imprint {
                 counter.add(imprint);

@@ -410,7 +410,7 @@ impl Watcher<'_> {
             processed,
         };
         let line = json::ascii(&answer) + "\n";
-        let dead = processed.tared.cells_where(f64::is_nan);
+        let dead = processed.tared.cells_where(|_, value| value.is_nan());
         let line = (line.into_bytes(), processed.imprint, dead);
         if lines.send(line, self.may_give_up) {
             Ok(())

@@ -87,14 +87,12 @@ impl Rule {
         gain: Option<&Matrix<f64>>,
         least: u32,
     ) -> Result<Imprint, FrameError> {
-        let at_or_above = |threshold| active(values, |_, value| value >= threshold);
+        let at_or_above = |threshold| values.cells_where(|_, value| value >= threshold);
         let imprint = match *self {
             Self::AtLeast(threshold) => at_or_above(threshold),
             Self::Percent(percent) => {
                 let max = values.values().iter().copied().fold(f64::NAN, f64::max);
-                active(values, |_, value| {
-                    max > 0.0 && value >= Self::percent_of(percent, max)
-                })
+                values.cells_where(|_, value| max > 0.0 && value >= Self::percent_of(percent, max))
             }
             Self::Hysteresis { low, high } => {
                 let strong = at_or_above(high);
@@ -107,7 +105,7 @@ impl Rule {
                 let tare = tare.ok_or(FrameError::NoTare)?;
                 let factor = |index: usize| gain.map_or(1.0, |gain| gain.values()[index].abs());
                 // A margin is above 0, so a value of 0 is never active, not even in a cell whose gain is 0.
-                active(values, |index, value| {
+                values.cells_where(|index, value| {
                     value > 0.0 && value >= factor(index) * tare.margin(index, deviations)
                 })
             }
@@ -122,19 +120,6 @@ impl Rule {
 /// Returns a threshold in the sensor's unit if it is one that a value may have.
 fn pressure(what: &'static str, value: f64) -> Result<f64, FrameError> {
     in_range(what, value, VALUES, "-1e300 to 1e300")
-}
-
-fn active(values: &Matrix<f64>, is_active: impl Fn(usize, f64) -> bool) -> Imprint {
-    let columns = usize::from(values.columns());
-    let mut imprint = Imprint::empty(values.size());
-    for (row, line) in values.values().chunks(columns).enumerate() {
-        let mut word = 0;
-        for (column, &value) in line.iter().enumerate() {
-            word |= u64::from(is_active(row * columns + column, value)) << column;
-        }
-        imprint.set_word(row, word);
-    }
-    imprint
 }
 
 /// Returns the 8-connected pieces of an imprint that are kept.

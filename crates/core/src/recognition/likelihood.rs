@@ -10,7 +10,7 @@
 use crate::imprint::Imprint;
 use crate::index::{narrow, wide};
 use crate::parameter::named;
-use crate::recognition::model::{Model, float};
+use crate::recognition::model::{Model, ScanTables, float};
 use crate::recognition::scan::{Nearest, Observed, shift_count};
 use crate::sensor::MatrixSize;
 
@@ -113,7 +113,8 @@ impl Model {
     /// Adds up the poses of each shape; one whose key has this number of places on a matrix counts `times`.
     fn sums_by_shape(&self, size: MatrixSize, times: fn(u64) -> u64) -> Vec<u64> {
         let mut sums = vec![0; self.shapes().len()];
-        for (own, poses) in self.index().boxes().iter().zip(self.poses_by_box()) {
+        let ScanTables { index, poses } = self.scan_tables();
+        for (own, poses) in index.boxes().iter().zip(poses.chunks(sums.len())) {
             let times = times(shift_count((own.width, own.height), size));
             for (sum, poses) in sums.iter_mut().zip(poses) {
                 *sum += poses * times;
@@ -209,7 +210,7 @@ impl Model {
             }
         };
         let none = || vec![0_u64; shapes * width];
-        let sums = (self.index()).counted(observed, (least, most), none, take, added);
+        let sums = (self.scan_tables().index).counted(observed, (least, most), none, take, added);
         sums.chunks(width).map(<[u64]>::to_vec).collect()
     }
 }

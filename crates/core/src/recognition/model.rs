@@ -87,9 +87,10 @@ impl PartialEq for Model {
 
 /// The tables that scans of a model need besides its keys.
 #[derive(Clone, Debug)]
-struct ScanTables {
-    index: KeyIndex,
-    poses: Vec<u64>,
+pub(super) struct ScanTables {
+    pub(super) index: KeyIndex,
+    /// For each box of the index, the number of poses in which each shape leaves a key of that box.
+    pub(super) poses: Vec<u64>,
 }
 
 /// The shapes of a model and the poses in which they were touched: everything except the keys.
@@ -364,16 +365,7 @@ impl Model {
             .map_or(&[], |key| self.counts(key))
     }
 
-    pub(super) fn index(&self) -> &KeyIndex {
-        &self.scan_tables().index
-    }
-
-    /// Iterates over the boxes of the index: the number of poses in which each shape leaves a key of that box.
-    pub(super) fn poses_by_box(&self) -> impl Iterator<Item = &[u64]> {
-        self.scan_tables().poses.chunks(self.head.shapes.len())
-    }
-
-    fn scan_tables(&self) -> &ScanTables {
+    pub(super) fn scan_tables(&self) -> &ScanTables {
         self.scan.get_or_init(|| {
             let index = KeyIndex::new(&self.keys);
             let mut poses = vec![0; index.boxes().len() * self.head.shapes.len()];

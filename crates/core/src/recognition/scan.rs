@@ -587,7 +587,7 @@ impl Model {
             return Some(known);
         }
         let rank = |key: usize| Reverse(self.most_frequent(key).1);
-        let found = (self.index()).nearest(&Observed::new(observed, dead), rank)?;
+        let found = (self.scan_tables().index).nearest(&Observed::new(observed, dead), rank)?;
         let mut imprint = Imprint::empty(observed.size());
         let (column, row) = found.place;
         for (index, word) in self.keys().get(found.key).rows().enumerate() {

@@ -160,35 +160,32 @@ impl Separation {
     ) -> Result<(NamedShape, GivenRanges), TrainingError> {
         let mut given = angles_only(self.steps.angles);
         let mut scaled = shape.clone();
-        match &shape.source {
-            Source::Figure(figure) => scaled.source = enlarged(figure, &shape.name, scale)?.into(),
-            Source::Picture(_) | Source::Outline(_) => {
-                let mut scale = scale;
-                if let Source::Outline(outline) = &shape.source
-                    && let Some(pitch) = outline.pitch_mm()
-                {
-                    // In mm, a scale is another pitch, which a zoom of nine decimals would only come near.
-                    let pitch = Some(to_decimals(pitch / scale, 9)).filter(|&own| own > 0.0);
-                    let finer = pitch.and_then(|own| outline.clone().at_pitch(own).ok());
-                    scaled.source = finer.ok_or(TrainingError::Large)?.into();
-                    scale = 1.0;
-                }
-                for axis in [Axis::ZoomX, Axis::ZoomY] {
-                    let own = shape.source.get(axis.parameter());
-                    let zoom = own.map_or(scale, |own| own * scale);
-                    // The zoom that makes one taxel as large as the largest sensor.
-                    if zoom > f64::from(Sensor::LARGEST.side()) {
-                        return Err(TrainingError::Large);
-                    }
-                    // If the zoom is out of range, the error names it.
-                    let zoom = Sensor::LARGEST.check(axis.parameter(), zoom);
-                    let zoom = zoom.map_err(|error| TrainingError::grid(&shape.name, error))?;
-                    let rounded = DecimalRange::rounded(zoom, 9);
-                    let digits = || GridError::Digits(zoom);
-                    given[axis] =
-                        Some(rounded.ok_or_else(|| TrainingError::grid(&shape.name, digits()))?);
-                }
+        if let Source::Figure(figure) = &shape.source {
+            scaled.source = enlarged(figure, &shape.name, scale)?.into();
+            return Ok((scaled, given));
+        }
+        let mut scale = scale;
+        if let Source::Outline(outline) = &shape.source
+            && let Some(pitch) = outline.pitch_mm()
+        {
+            // In mm, a scale is another pitch, which a zoom of nine decimals would only come near.
+            let pitch = Some(to_decimals(pitch / scale, 9)).filter(|&own| own > 0.0);
+            let finer = pitch.and_then(|own| outline.clone().at_pitch(own).ok());
+            scaled.source = finer.ok_or(TrainingError::Large)?.into();
+            scale = 1.0;
+        }
+        let refused = |error: GridError| TrainingError::grid(&shape.name, error);
+        for axis in [Axis::ZoomX, Axis::ZoomY] {
+            let zoom = shape.source.get(axis.parameter()).unwrap_or(1.0) * scale;
+            // The zoom that makes one taxel as large as the largest sensor.
+            if zoom > f64::from(Sensor::LARGEST.side()) {
+                return Err(TrainingError::Large);
             }
+            // If the zoom is out of range, the error names it.
+            let zoom = Sensor::LARGEST.check(axis.parameter(), zoom);
+            let zoom = zoom.map_err(|error| refused(error.into()))?;
+            let range = DecimalRange::rounded(zoom, 9);
+            given[axis] = Some(range.ok_or_else(|| refused(GridError::Digits(zoom)))?);
         }
         Ok((scaled, given))
     }
