@@ -103,13 +103,6 @@ impl Default for Sensor {
     }
 }
 
-impl fmt::Display for Sensor {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (size, threshold, pitch) = (self.size, self.threshold, self.pitch_mm);
-        write!(f, "{size} with threshold {threshold} and pitch {pitch} mm")
-    }
-}
-
 impl Sensor {
     /// The largest sensor, 64 × 64. It allows every value that any sensor allows.
     pub const LARGEST: Self = Self::of_size(MatrixSize::LARGEST);

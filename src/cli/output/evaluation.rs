@@ -55,29 +55,21 @@ pub(crate) fn record(
     classifier: Option<&ClassifierEvaluation>,
 ) -> Record<'static> {
     let row = |counts: Vec<u128>| counts.into_iter().map(count).collect::<Value>();
+    let (certainty, rows) = (own.certainty, own.confusion.rows().map(row));
     let mut record = vec![
         ("labels", json!(own.labels)),
         ("touches", count(own.touches)),
         ("right", count(own.right)),
         ("accuracy", json!(own.accuracy())),
         ("error", json!(own.error())),
-        (
-            "certain",
-            own.certainty.map(|own| count(own.touches)).into(),
-        ),
+        ("certain", json!(certainty.map(|own| count(own.touches)))),
         ("tied", count(own.tied)),
         ("right_in_top_two", count(own.right_in_top_two)),
         ("information_bits", json!(own.information_bits)),
         ("prior_bits", json!(own.prior_bits)),
         ("keys", json!(own.keys)),
-        (
-            "keys_of_one_shape",
-            json!(own.certainty.map(|own| own.keys)),
-        ),
-        (
-            "confusion",
-            own.confusion.rows().map(row).collect::<Value>(),
-        ),
+        ("keys_of_one_shape", json!(certainty.map(|own| own.keys))),
+        ("confusion", rows.collect()),
     ];
     if let Some(reached) = classifier {
         record.push(("classifier", json!(reached.classifier.name())));

@@ -184,13 +184,6 @@ pub trait Solid {
     fn draw<T: Real>(&self, pen: &mut impl Pen<T>);
 }
 
-/// A reference to a shape is a shape, so that a shape made of others may borrow them.
-impl<S: Solid> Solid for &S {
-    fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
-        (**self).draw(pen);
-    }
-}
-
 /// A simple polygon with at least three vertices, in either sense of rotation.
 ///
 /// With fewer vertices, or with all of them on a line, it bounds nothing. Its edges should not cross each other: a part

@@ -277,7 +277,10 @@ impl Default for Noise {
     /// One taxel of a hundred: under this noise shapes are ranked if none is given, because a touch between the poses
     /// of a model differs in a few taxels from their imprints.
     fn default() -> Self {
-        Self::of_flip(0.01)
+        Self {
+            flip: 0.01,
+            dead: None,
+        }
     }
 }
 
@@ -288,7 +291,7 @@ impl Noise {
     /// Returns an error if the probability is not from 0 to below ½.
     pub fn new(flip: f64) -> Result<Self, NoiseError> {
         if (0.0..0.5).contains(&flip) {
-            Ok(Self::of_flip(flip))
+            Ok(Self { flip, dead: None })
         } else {
             Err(NoiseError { found: flip })
         }
@@ -310,11 +313,6 @@ impl Noise {
     /// Returns the dead taxels, which are left out; None if all taxels count.
     pub fn dead(&self) -> Option<&Imprint> {
         self.dead.as_ref()
-    }
-
-    /// Creates a noise without dead taxels; the probability is from 0 to below ½.
-    const fn of_flip(flip: f64) -> Self {
-        Self { flip, dead: None }
     }
 
     /// Returns the fewest taxels of a matrix such that no more flip in 999 of 1,000 touches.
