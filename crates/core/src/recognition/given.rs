@@ -74,12 +74,6 @@ impl std::str::FromStr for ShapeDescriptor {
     }
 }
 
-impl std::fmt::Display for ShapeDescriptor {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.pad(self.key())
-    }
-}
-
 /// A descriptor that is measured in steps: values are rounded to the nearest multiple of the step. As text, its key and
 /// the step: `cg_cd=0.01`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,7 +110,7 @@ fn no_rounding(found: &str) -> GivenError {
 
 impl std::fmt::Display for Rounding {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}={}", self.descriptor, self.step)
+        write!(f, "{}={}", self.descriptor.key(), self.step)
     }
 }
 

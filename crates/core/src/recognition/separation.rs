@@ -2,7 +2,7 @@
 //! cells, and of the threshold.
 
 use crate::figure::Figure;
-use crate::parameter::number::{share, to_decimals};
+use crate::parameter::number::to_decimals;
 use crate::parameter::{Parameter, named};
 use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, Ranges, Reach};
 use crate::progress::Progress;
@@ -70,26 +70,8 @@ pub struct SeparationPoint {
     pub threshold: f64,
     /// The side of the smallest square sensor, at least 16, that cuts nothing off.
     pub side: u8,
-    /// The number of touches.
-    pub touches: u128,
-    /// Touches that are named right.
-    pub right: u128,
-    /// Touches that only one shape can leave.
-    pub certain: u128,
-    /// The number of distinct keys.
-    pub keys: usize,
-}
-
-impl SeparationPoint {
-    /// Returns the share of touches that are named wrong.
-    pub fn error(&self) -> f64 {
-        share(self.touches - self.right, self.touches)
-    }
-
-    /// Returns the share of touches that only one shape can leave.
-    pub fn certain_share(&self) -> f64 {
-        share(self.certain, self.touches)
-    }
+    /// The limit.
+    pub limit: Evaluation,
 }
 
 /// The smallest size that reaches a wanted error, among those that a search has tried.
@@ -210,10 +192,7 @@ impl Separation {
             scale,
             threshold,
             side,
-            touches: limit.touches,
-            right: limit.right,
-            certain: limit.certainty.unwrap_or_default().touches,
-            keys: limit.keys,
+            limit,
         })
     }
 
@@ -232,14 +211,17 @@ impl Separation {
         error: f64,
         progress: &dyn Progress,
     ) -> Result<Option<SmallestSize>, TrainingError> {
-        let Some(first) = scan.iter().position(|point| point.error() <= error) else {
+        let Some(first) = scan.iter().position(|point| point.limit.error() <= error) else {
             return Ok(None);
         };
         let later = &scan[first + 1..];
         let mut found = SmallestSize {
             point: scan[first].clone(),
             step: 0.0,
-            missed_again: later.iter().filter(|point| point.error() > error).count(),
+            missed_again: later
+                .iter()
+                .filter(|point| point.limit.error() > error)
+                .count(),
         };
         if first > 0 {
             let (from, to) = (scan[first - 1].value, scan[first].value);
@@ -248,7 +230,7 @@ impl Separation {
             for index in 1..FINER {
                 let value = to_decimals(from + f64::from(index) * step, 9);
                 let point = self.at(axis, value, scan[first].threshold, progress)?;
-                if point.error() <= error {
+                if point.limit.error() <= error {
                     found.point = point;
                     break;
                 }
@@ -288,10 +270,6 @@ mod tests {
     use crate::pose::Ranges;
     use crate::progress::{ToTheEnd, stop_if};
     use crate::recognition::training::equal_figures;
-
-    fn certain(limit: &Evaluation) -> Option<u128> {
-        limit.certainty.map(|certainty| certainty.touches)
-    }
 
     fn coarse(shapes: Vec<NamedShape>) -> Separation {
         let mut separation = Separation::new(shapes).expect("a set");
@@ -339,11 +317,7 @@ mod tests {
             );
             let model = by_hand.and_then(Training::run).expect("not cut");
             let limit = Evaluation::of(&model);
-            assert_eq!(
-                (point.touches, point.right, Some(point.certain), point.keys),
-                (limit.touches, limit.right, certain(&limit), limit.keys),
-                "{scale} {threshold}"
-            );
+            assert_eq!(point.limit, limit, "{scale} {threshold}");
         }
     }
 
@@ -366,11 +340,7 @@ mod tests {
             separation.steps = steps;
             let point = separation.at(SizeAxis::Scale, 1.0, 0.5, &ToTheEnd);
             let point = point.expect("it fits");
-            assert_eq!(
-                (point.side, point.right, Some(point.certain), point.keys),
-                (side, limit.right, certain(&limit), limit.keys),
-                "{positions} positions"
-            );
+            assert_eq!((point.side, point.limit), (side, limit), "{positions}");
         }
     }
 
@@ -388,11 +358,11 @@ mod tests {
         ];
         let separation = coarse(shapes);
         let points = scan(&separation, "1:3:1");
-        let errors: Vec<f64> = points.iter().map(SeparationPoint::error).collect();
+        let errors: Vec<f64> = points.iter().map(|point| point.limit.error()).collect();
         assert!(errors[0] > errors[2] && errors[2] < 0.01, "{errors:?}");
         // Half the pitch is twice the scale.
         let pitch = separation.at(SizeAxis::Pitch, 0.5, 0.5, &ToTheEnd);
-        assert_eq!(pitch.expect("it fits").error(), errors[1]);
+        assert_eq!(pitch.expect("it fits").limit.error(), errors[1]);
         assert_eq!(
             separation
                 .at(SizeAxis::Scale, 40.0, 0.5, &ToTheEnd)
@@ -405,21 +375,21 @@ mod tests {
     fn the_smallest_size_is_the_first_of_those_tried() {
         let separation = coarse(equal_figures());
         let points = scan(&separation, "0.5:1.7:0.2");
-        assert!(points[0].error() > 0.5 && points[6].error() < 0.1);
+        assert!(points[0].limit.error() > 0.5 && points[6].limit.error() < 0.1);
         let wanted = 0.2;
         let found = separation.smallest(SizeAxis::Scale, &points, wanted, &ToTheEnd);
         let found = found.expect("not stopped").expect("it is reached");
         assert_eq!(found.step, 0.02);
-        assert!(found.point.error() <= wanted);
+        assert!(found.point.limit.error() <= wanted);
         // Trying every size gives the same result.
         let fine = scan(&separation, "0.5:1.7:0.02");
         let first = fine.iter().find(|point| {
-            let coarse = points.iter().find(|other| other.error() <= wanted);
-            point.error() <= wanted && coarse.is_some_and(|it| it.value - point.value < 0.2)
+            let coarse = points.iter().find(|other| other.limit.error() <= wanted);
+            point.limit.error() <= wanted && coarse.is_some_and(|it| it.value - point.value < 0.2)
         });
         assert_eq!(first.map(|point| point.value), Some(found.point.value));
         // An error that is just reached is small enough.
-        let just = found.point.error();
+        let just = found.point.limit.error();
         let again = separation.smallest(SizeAxis::Scale, &points, just, &ToTheEnd);
         let again = again.expect("not stopped").expect("it is reached");
         assert_eq!((again.point, again.step), (found.point, found.step));
@@ -440,17 +410,18 @@ mod tests {
 
     #[test]
     fn an_error_equal_to_the_wanted_one_is_small_enough() {
-        let point = |value: f64, right: u128| SeparationPoint {
-            value,
-            scale: value,
-            threshold: 0.5,
-            side: 16,
-            touches: 10,
-            right,
-            certain: 0,
-            keys: 1,
-        };
         let separation = coarse(equal_figures());
+        let one = separation
+            .at(SizeAxis::Scale, 0.5, 0.5, &ToTheEnd)
+            .expect("it fits");
+        let point = |value: f64, right: u128| {
+            let mut point = SeparationPoint {
+                value,
+                ..one.clone()
+            };
+            (point.limit.touches, point.limit.right) = (10, right);
+            point
+        };
         let smallest = |scan: &[SeparationPoint]| {
             let found = separation.smallest(SizeAxis::Scale, scan, 0.1, &ToTheEnd);
             found.expect("nothing is computed")

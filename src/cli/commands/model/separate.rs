@@ -10,7 +10,7 @@ use std::ffi::{OsStr, OsString};
 use clap::ArgGroup;
 use serde::Serialize;
 use serde_json::{Value, json};
-use taxel_core::parameter::number;
+use taxel_core::parameter::number::{self, share};
 use taxel_core::pose::{Axis, DecimalRange};
 use taxel_core::recognition::{
     CellPositions, Separation, SeparationPoint, SizeAxis, SmallestSize, TrainingError,
@@ -248,6 +248,10 @@ struct Separated {
     wanted: Option<f64>,
 }
 
+fn certain(point: &SeparationPoint) -> u128 {
+    point.limit.certainty.unwrap_or_default().touches
+}
+
 fn short(value: f64) -> String {
     decimal(value, 6)
 }
@@ -261,11 +265,11 @@ impl Separated {
         Record(vec![
             (self.axis.name(), json!(point.value)),
             ("threshold", json!(point.threshold)),
-            ("error", json!(point.error())),
-            ("touches", count(point.touches)),
-            ("right", count(point.right)),
-            ("certain", count(point.certain)),
-            ("keys", json!(point.keys)),
+            ("error", json!(point.limit.error())),
+            ("touches", count(point.limit.touches)),
+            ("right", count(point.limit.right)),
+            ("certain", count(certain(point))),
+            ("keys", json!(point.limit.keys)),
             ("side", json!(point.side)),
         ])
     }
@@ -284,13 +288,17 @@ impl Separated {
     fn plotted(&self) -> (&'static str, Vec<Line>) {
         let (name, several) = (self.axis.name(), self.curves.len() > 1);
         if several && self.curves.iter().all(|(_, points, _)| points.len() == 1) {
-            let points = self.points().map(|point| (point.threshold, point.error()));
+            let points = self
+                .points()
+                .map(|point| (point.threshold, point.limit.error()));
             let size = self.points().next().map_or(0.0, |point| point.value);
             let curve = (format!("{name} {}", short(size)), points.collect());
             return ("threshold", vec![curve]);
         }
         let curves = self.curves.iter().map(|(threshold, points, _)| {
-            let points = points.iter().map(|point| (point.value, point.error()));
+            let points = points
+                .iter()
+                .map(|point| (point.value, point.limit.error()));
             (format!("threshold {}", short(*threshold)), points.collect())
         });
         (name, curves.collect())
@@ -315,7 +323,7 @@ impl Separated {
                 text += &format!("no {noun} that was tried has an error of at most {wanted}\n");
                 continue;
             };
-            let (size, error) = (short(found.point.value), percent(found.point.error()));
+            let (size, error) = (short(found.point.value), percent(found.point.limit.error()));
             text += &format!(
                 "the {extreme} {noun} with an error of at most {wanted} is {size}{unit}: {error}\n"
             );
@@ -339,8 +347,11 @@ impl Table for Separated {
         let titles = [name, "threshold", "error", "certain", "imprints", "sensor"];
         let mut rows = vec![row(titles)];
         for point in self.points() {
-            let (side, keys) = (point.side, grouped(point.keys as u64));
-            let (error, certain) = (percent(point.error()), percent(point.certain_share()));
+            let (side, keys) = (point.side, grouped(point.limit.keys as u64));
+            let (error, certain) = (
+                percent(point.limit.error()),
+                percent(share(certain(point), point.limit.touches)),
+            );
             let (size, threshold) = (short(point.value), short(point.threshold));
             let side = format!("{side} × {side}");
             rows.push(row([&size, &threshold, &error, &certain, &keys, &side]));
