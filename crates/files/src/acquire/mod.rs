@@ -123,7 +123,7 @@ pub fn acquire(
         ..options.of_recording()
     };
     if recording.is_none() {
-        reading.stream_size = options.stream_size;
+        reading.size = options.size.or(options.stream_size);
         reading.format = options.format.or(options.stream_format);
     }
     let opened = recording.map(|(path, file, _)| OpenSource::file(path, file));

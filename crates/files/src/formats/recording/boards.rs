@@ -125,14 +125,10 @@ impl<'a, 'b> Board<'a, 'b> {
         })
     }
 
-    fn fill(&mut self, cells: &[u8]) {
+    fn give(&mut self, cells: &[u8]) -> Result<(), Stop> {
         for (slot, &byte) in self.frame.values_mut().iter_mut().zip(cells) {
             *slot = f64::from(byte);
         }
-    }
-
-    fn give(&mut self, cells: &[u8]) -> Result<(), Stop> {
-        self.fill(cells);
         self.sink.frame(self.channel, &mut self.frame)
     }
 

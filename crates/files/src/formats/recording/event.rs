@@ -20,8 +20,6 @@ use crate::formats::recording::time::{FrameClock, TimeUnit};
 pub struct ReadOptions {
     /// The size of a frame, for what does not state it.
     pub size: Option<FrameSize>,
-    /// The size of the frames of a stream of bytes or lines, if [`Self::size`] is not given and nothing else tells it.
-    pub stream_size: Option<FrameSize>,
     /// The format; None to look at the content.
     pub format: Option<&'static Format>,
     /// The column of a table with the time.

@@ -79,9 +79,7 @@ impl StreamReader {
 
     /// Prepares for a recording that grows: like a stream, but each channel is reported.
     pub fn of_recording(options: &ReadOptions) -> Self {
-        let size = options.size.or(options.stream_size);
         let options = ReadOptions {
-            size,
             leaves_out: true,
             ..options.clone()
         };

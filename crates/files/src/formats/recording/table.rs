@@ -21,8 +21,7 @@ use crate::formats::recording::event::{
 };
 use crate::formats::recording::size::frame_size;
 use crate::formats::recording::text::{
-    Field, Separator, TextLines, is_blank, is_comment, is_none, text, whole, wrong_count,
-    wrong_field,
+    Separator, TextLines, is_blank, is_comment, is_none, text, whole, wrong_count, wrong_field,
 };
 use crate::formats::recording::time::{TimeUnit, read_moment, time_name};
 
@@ -415,8 +414,8 @@ impl Table<'_, '_> {
                 continue;
             }
             match separator.value(field) {
-                Field::Value(number) => numbers.push(number),
-                Field::Wrong if read_moment(field).is_none() => {
+                Some(number) if !number.is_nan() => numbers.push(number),
+                None if read_moment(field).is_none() => {
                     words += 1;
                     let name = text(field);
                     is_usual &= time_name(&name).is_some() || is_label(&name);
@@ -432,11 +431,7 @@ impl Table<'_, '_> {
         };
         let many = numbers.len() > 1;
         if words == 0 {
-            let others = fields
-                .iter()
-                .enumerate()
-                .filter(|(index, field)| field.is_empty() && *index > 0);
-            return many && counts(0.0) && others.count() == 0;
+            return many && counts(0.0) && !fields[1..].iter().any(|field| field.is_empty());
         }
         numbers.is_empty() || is_usual || many && (counts(0.0) || counts(1.0))
     }
@@ -632,13 +627,13 @@ impl Table<'_, '_> {
         let (mut read, mut start, mut unread) = (None, None, None);
         if let Some(field) = &taken.time {
             match (layout.separator.value(field), read_moment(field)) {
-                (Field::Value(value), _) => read = Some(clock.number(field, value)),
-                (Field::NoCell, _) => {}
-                (Field::Wrong, Some(moment)) => {
+                (Some(value), _) if value.is_nan() => {}
+                (Some(value), _) => read = Some(clock.number(field, value)),
+                (None, Some(moment)) => {
                     read = Some(clock.moment(moment));
                     start = Some(text(field));
                 }
-                (Field::Wrong, None) => unread = Some(shortened(&text(field))),
+                (None, None) => unread = Some(shortened(&text(field))),
             }
         }
         let time = read.map(|read| clock.since_first(read));
@@ -854,16 +849,13 @@ impl TableLayout {
             found += 1;
             match own {
                 Some(&Use::Cell { channel, index }) => {
-                    let cell = self.separator.value(field).cell();
+                    let cell = self.separator.value(field);
                     taken.frames[channel].values_mut()[offset + index] =
                         cell.ok_or_else(|| self.wrong(number, found, field))?;
                 }
                 Some(Use::Time) if row == 0 => taken.time = Some(field.to_vec()),
                 Some(Use::Label) if row == 0 => {
-                    let number = match self.separator.value(field) {
-                        Field::Value(number) => whole(number),
-                        Field::NoCell | Field::Wrong => None,
-                    };
+                    let number = self.separator.value(field).and_then(whole);
                     let is_none = is_none(field);
                     let label = || Label::Text(text(field));
                     let label = number.map_or_else(label, Label::Number);
@@ -972,22 +964,13 @@ struct CellName {
 impl CellName {
     /// Splits the last two numbers off a name, or the only one. None if it has none, or one that is too large.
     fn of(name: &str) -> Option<Self> {
-        let mut parts: Vec<(bool, String)> = Vec::new();
-        for character in name.chars() {
-            let is_digit = character.is_ascii_digit();
-            match parts.last_mut() {
-                Some((kind, part)) if *kind == is_digit => part.push(character),
-                _ => parts.push((is_digit, character.into())),
-            }
+        let runs = name.rsplit(|character: char| !character.is_ascii_digit());
+        let (mut pattern, mut numbers) = (name.to_owned(), Vec::new());
+        for run in runs.filter(|run| !run.is_empty()).take(2) {
+            numbers.insert(0, run.parse().ok()?);
+            let at = pattern.rfind(run)?;
+            pattern.replace_range(at..at + run.len(), "#");
         }
-        let mut numbers = Vec::new();
-        for (is_number, part) in parts.iter_mut().rev() {
-            if *is_number && numbers.len() < 2 {
-                numbers.insert(0, part.parse().ok()?);
-                "#".clone_into(part);
-            }
-        }
-        let pattern: String = parts.into_iter().map(|(_, part)| part).collect();
         let words: Vec<String> = pattern
             .split(|character: char| !character.is_alphanumeric() && character != '#')
             .filter(|word| !word.is_empty())

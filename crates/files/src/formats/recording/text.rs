@@ -226,29 +226,9 @@ pub(super) fn text(bytes: &[u8]) -> String {
     }
 }
 
-pub(crate) enum Field {
-    Value(f64),
-    /// No value: the cell does not exist.
-    NoCell,
-    Wrong,
-}
-
-impl Field {
-    /// Returns the value of a cell, NaN if there is none; None if the field is anything else.
-    pub(crate) fn cell(self) -> Option<f64> {
-        match self {
-            Self::Value(read_value) => Some(read_value),
-            Self::NoCell => Some(f64::NAN),
-            Self::Wrong => None,
-        }
-    }
-}
-
-pub(super) fn read_value(field: &[u8]) -> Field {
-    match read_number(field) {
-        Some(read_value) if read_value.abs() <= LARGEST_VALUE => Field::Value(read_value),
-        _ => Field::Wrong,
-    }
+/// Reads the value of a cell; None for anything that is no number of an allowed size.
+pub(super) fn read_value(field: &[u8]) -> Option<f64> {
+    read_number(field).filter(|value| value.abs() <= LARGEST_VALUE)
 }
 
 /// Fills a row of values from the fields of a line. Fields beyond the values must be empty.
@@ -256,7 +236,7 @@ pub(super) fn fill_row<'a>(
     values: &mut [f64],
     fields: impl Iterator<Item = &'a [u8]>,
     number: u64,
-    read: impl Fn(&[u8]) -> Field,
+    read: impl Fn(&[u8]) -> Option<f64>,
 ) -> Result<(), ReadError> {
     let expected = values.len();
     let mut fields = fields.zip(1..);
@@ -265,9 +245,7 @@ pub(super) fn fill_row<'a>(
         let Some(field) = field.filter(|field| !field.is_empty()) else {
             return Err(wrong_count(number, found, expected));
         };
-        *slot = read(field)
-            .cell()
-            .ok_or_else(|| wrong_field(number, found + 1, field))?;
+        *slot = read(field).ok_or_else(|| wrong_field(number, found + 1, field))?;
     }
     match fields.filter(|(field, _)| !field.is_empty()).last() {
         Some((_, found)) => Err(wrong_count(number, found, expected)),
@@ -411,10 +389,10 @@ impl Separator {
         }
     }
 
-    /// Reads the content of a field. With semicolons or tabs as separators, a comma is the decimal sign.
-    pub(crate) fn value(self, field: &[u8]) -> Field {
+    /// Reads the value of a cell, NaN if there is none; None if the field is anything else. With semicolons or tabs as separators, a comma is the decimal sign.
+    pub(crate) fn value(self, field: &[u8]) -> Option<f64> {
         if is_none(field) {
-            return Field::NoCell;
+            return Some(f64::NAN);
         }
         match self {
             Self::Byte(b';' | b'\t') => decimal(field),
@@ -424,12 +402,12 @@ impl Separator {
 
     /// Returns true if a field can be that of a cell: a number, or a word for a missing value.
     pub(super) fn is_numeric(self, field: &[u8]) -> bool {
-        !matches!(self.value(field), Field::Wrong)
+        self.value(field).is_some()
     }
 }
 
 /// Reads a number whose decimal sign may be a comma.
-pub(super) fn decimal(field: &[u8]) -> Field {
+pub(super) fn decimal(field: &[u8]) -> Option<f64> {
     if !field.contains(&b',') {
         return read_value(field);
     }

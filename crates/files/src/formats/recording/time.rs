@@ -9,10 +9,10 @@
 //! ```
 //! Dates that begin with the day or the month are not read, because 01.02. and 02/01 may be the same day.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use crate::formats::recording::event::RecordingNote;
-use crate::formats::recording::text::{self, Field};
+use crate::formats::recording::text;
 use crate::formats::seconds::{since, to_nanoseconds};
 
 /// The longest time from one frame to the next, in seconds: more than 30 years.
@@ -191,9 +191,7 @@ fn clock_parts(clock: &str) -> Option<(i32, i32, f64)> {
     let minutes = two_digits(parts.next()?, 59)?;
     let seconds = parts.next()?;
     let is_number = seconds.starts_with(|first: char| first.is_ascii_digit());
-    let Field::Value(seconds) = text::read_value(seconds.as_bytes()) else {
-        return None;
-    };
+    let seconds = text::read_value(seconds.as_bytes())?;
     (is_number && seconds < 61.0).then_some((hours, minutes, seconds))
 }
 
@@ -213,14 +211,9 @@ pub(super) fn day(year: i32, month: i32, day: i32) -> i32 {
 /// Returns the day of `2024-05-01` or `2024/05/01`.
 fn iso_day(date: &str) -> Option<i32> {
     let mut parts = date.splitn(3, ['-', '/']);
-    let year = parts.next().filter(|year| year.len() == 4)?;
-    let year = year
-        .bytes()
-        .all(|digit| digit.is_ascii_digit())
-        .then_some(year)?;
+    let year = whole(parts.next()?, 4..=4, 9999)?;
     let month = two_digits(parts.next()?, 12).filter(|&month| month > 0)?;
     let of_month = two_digits(parts.next()?, 31).filter(|&day| day > 0)?;
-    let year = year.parse().ok()?;
     // Day 0 of a month is the last day of the month before.
     let last = match month {
         12 => 31,
@@ -242,7 +235,12 @@ fn offset(text: &str) -> Option<i32> {
 
 /// Reads a number of one or two digits that is not above `most`.
 fn two_digits(text: &str, most: i32) -> Option<i32> {
-    let is_number = matches!(text.len(), 1 | 2) && text.bytes().all(|digit| digit.is_ascii_digit());
+    whole(text, 1..=2, most)
+}
+
+fn whole(text: &str, digits: RangeInclusive<usize>, most: i32) -> Option<i32> {
+    let is_number =
+        digits.contains(&text.len()) && text.bytes().all(|digit| digit.is_ascii_digit());
     let number = is_number.then(|| text.parse().ok()).flatten()?;
     (number <= most).then_some(number)
 }

@@ -22,7 +22,7 @@ use crate::error::ReadError;
 use crate::formats::recording::error::{in_field, in_line, unshaped};
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, Sink, Stop};
 use crate::formats::recording::size::{arranged, changed, matrix_size};
-use crate::formats::recording::text::{Field, TextLines, read_value, wrong_count};
+use crate::formats::recording::text::{TextLines, read_value, wrong_count};
 use crate::formats::recording::time::{Time, TimeUnit};
 
 /// The most sizes of a layout that are kept: more than any message has.
@@ -134,7 +134,7 @@ impl Message {
             .zip(1..)
         {
             let value = match read_value(field) {
-                Field::Value(value) => value,
+                Some(value) => value,
                 _ if field.eq_ignore_ascii_case(b"nan") || field.eq_ignore_ascii_case(b".nan") => {
                     f64::NAN
                 }

@@ -35,7 +35,7 @@ use crate::formats::recording::error::in_line;
 use crate::formats::recording::event::{ChannelInfo, RecordingNote, Sink, Stop};
 use crate::formats::recording::size::{pitch_in_mm, stated};
 use crate::formats::recording::text::{
-    self, Field, Separator, TextLines, decimal, is_blank, read_number, text, unpadded,
+    self, Separator, TextLines, decimal, is_blank, read_number, text, unpadded,
 };
 use crate::formats::recording::time;
 use crate::formats::seconds::{of_label, since};
@@ -97,7 +97,7 @@ fn header<R: BufRead>(lines: &mut TextLines<R>) -> Result<(FrameSize, ChannelInf
     info.size = Some(size);
     let value = |key| first.get(key).map(|(value, _)| &**value);
     info.start = value("TIME").map(str::to_owned);
-    let step = value("SECONDS_PER_FRAME").and_then(|step| decimal(step.as_bytes()).cell());
+    let step = value("SECONDS_PER_FRAME").and_then(|step| decimal(step.as_bytes()));
     info.seconds_per_frame = step.and_then(time::step);
     let pitches = value("COL_SPACING")
         .and_then(spacing)
@@ -111,7 +111,7 @@ fn header<R: BufRead>(lines: &mut TextLines<R>) -> Result<(FrameSize, ChannelInf
 fn spacing(value: &str) -> Option<f64> {
     let end = value.rfind(|sign: char| sign.is_ascii_digit())? + 1;
     let (length, unit) = value.split_at(end);
-    let length = decimal(length.as_bytes()).cell()?;
+    let length = decimal(length.as_bytes())?;
     pitch_in_mm(length, unit.trim())
 }
 
@@ -175,7 +175,7 @@ fn values<R: BufRead>(lines: &mut TextLines<R>, frame: &mut Frame) -> Result<(),
         }
         let fields = Separator::Byte(b',').split(lines.line());
         text::fill_row(row, fields, lines.number(), |field| match field {
-            b"B" | b"b" => Field::NoCell,
+            b"B" | b"b" => Some(f64::NAN),
             field => text::read_value(field),
         })?;
     }

@@ -114,7 +114,7 @@ pub(crate) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), S
 }
 
 fn is_value(field: &str) -> bool {
-    decimal(field.as_bytes()).cell().is_some()
+    decimal(field.as_bytes()).is_some()
 }
 
 /// Returns the key of a line in capital letters, without the colon after it, and its value.
@@ -134,7 +134,7 @@ pub(crate) fn has_key(line: &[u8], key: &str) -> bool {
 impl XsensorState {
     /// Reads a line `key,value`.
     fn line(&mut self, key: &str, value: &str, number: u64) -> Result<(), ReadError> {
-        let number_of = || decimal(value.as_bytes()).cell();
+        let number_of = || decimal(value.as_bytes());
         // The unit is part of the key: `SENSEL WIDTH (CM)`.
         let length = || {
             let unit = key.split_once('(')?.1.trim_end_matches(')');
