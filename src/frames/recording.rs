@@ -68,8 +68,8 @@ impl Recording {
         };
         let written = write(recorder);
         let recorded = RecordedFrames {
-            frames: recorder.frames(),
-            left_out: recorder.left_out(),
+            frames: recorder.frames,
+            left_out: recorder.left_out,
         };
         let failed = written.is_err().then(|| open.take()).flatten();
         drop(open);
@@ -82,7 +82,7 @@ impl Recording {
     pub fn finish(&self) -> Result<Option<RecordedFrames>, RecorderError> {
         let recorder = locked(&self.recorder).take();
         let finish = |recorder: FrameRecorder| {
-            let left_out = recorder.left_out();
+            let left_out = recorder.left_out;
             let frames = recorder.finish()?;
             Ok(RecordedFrames { frames, left_out })
         };

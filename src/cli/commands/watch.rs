@@ -292,7 +292,7 @@ impl Watcher<'_> {
     fn add_channel(&mut self, info: &ChannelInfo) -> Result<(), Failure> {
         self.names.push(info.name.clone());
         let is_chosen = self.channels.add(info);
-        let names = self.channels.names();
+        let names = &self.channels.names;
         if self.request.options.channel.is_none() && names.len() > 1 {
             if self.has_frame && self.held.is_none() {
                 let (own, other) = (&names[0], info.shown_name());

@@ -280,7 +280,7 @@ impl Feed {
             AcquireEvent::Channel(info) => self.change(|pending| {
                 let is_chosen = pending.channels.add(info);
                 let status = &mut pending.batch.status;
-                status.channels = pending.channels.names().len();
+                status.channels = pending.channels.names.len();
                 if is_chosen {
                     status.channel = Arc::new(info.clone());
                 }

@@ -76,11 +76,13 @@ pub struct FrameRecorder {
     size: Option<FrameSize>,
     /// The records that are not in the file yet.
     waiting: Vec<u8>,
-    /// The number of records in the file and waiting, and the number in its header.
-    records: u64,
+    /// The number of frames that were recorded.
+    pub frames: u64,
+    /// The number of frames that were left out because their size is not that of the first one: an array has one size.
+    pub left_out: u64,
+    /// The number of records in the header.
     counted: u64,
     written: Instant,
-    left_out: u64,
     rate: FrameRate,
     /// Whether frames carry times, so that they are not only those of arrival.
     carries_times: bool,
@@ -122,23 +124,13 @@ impl FrameRecorder {
             file: None,
             size: None,
             waiting: Vec::new(),
-            records: 0,
+            frames: 0,
             counted: 0,
             written: Instant::now(),
             left_out: 0,
             rate: FrameRate::over(MOST_BURSTS),
             carries_times: false,
         })
-    }
-
-    /// The number of frames that were recorded.
-    pub fn frames(&self) -> u64 {
-        self.records
-    }
-
-    /// The number of frames that were left out because their size is not that of the first one: an array has one size.
-    pub fn left_out(&self) -> u64 {
-        self.left_out
     }
 
     /// Changes the metadata, also in the file once there is one.
@@ -207,7 +199,7 @@ impl FrameRecorder {
         self.metadata.seconds_per_frame = stated.or_else(measured);
         self.metadata.ended = Some(true);
         let described = self.write_metadata();
-        written.and(described).map(|()| self.records)
+        written.and(described).map(|()| self.frames)
     }
 
     fn take(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), RecorderError> {
@@ -220,7 +212,7 @@ impl FrameRecorder {
             self.rate.add(time);
             self.carries_times |= frame.time.is_some();
         }
-        if self.records == 0 {
+        if self.frames == 0 {
             self.begin(size)?;
         }
         let time = time.unwrap_or(f64::NAN);
@@ -231,7 +223,7 @@ impl FrameRecorder {
         let values = frame.values().iter();
         let values = values.map(|value| Some(*value).filter(allowed).unwrap_or(f64::NAN));
         self.waiting.extend(values.flat_map(f64::to_le_bytes));
-        self.records += 1;
+        self.frames += 1;
         if self.waiting.len() >= MOST_WAITING {
             self.write_records()?;
         }
@@ -282,7 +274,7 @@ impl FrameRecorder {
             return Ok(());
         };
         let record = 16 + 8 * size.cells() as u64;
-        let start = HEADER + self.records * record - self.waiting.len() as u64;
+        let start = HEADER + self.frames * record - self.waiting.len() as u64;
         let written = file
             .seek(SeekFrom::Start(start))
             .and_then(|_| file.write_all(&self.waiting));
@@ -291,8 +283,8 @@ impl FrameRecorder {
             return Ok(());
         };
         let end = file.metadata().map_or(start, |found| found.len());
-        self.records = end.saturating_sub(HEADER) / record;
-        let _ = file.set_len(HEADER + self.records * record);
+        self.frames = end.saturating_sub(HEADER) / record;
+        let _ = file.set_len(HEADER + self.frames * record);
         let _ = self.count();
         Err(self.failed(error))
     }
@@ -303,14 +295,14 @@ impl FrameRecorder {
         let (Some(file), Some(size)) = (&mut self.file, self.size) else {
             return Ok(());
         };
-        if self.counted != self.records {
-            let header = header(size, self.records);
+        if self.counted != self.frames {
+            let header = header(size, self.frames);
             let counted = file
                 .sync_data()
                 .and_then(|()| file.seek(SeekFrom::Start(0)))
                 .and_then(|_| file.write_all(&header));
             counted.map_err(|error| self.failed(error))?;
-            self.counted = self.records;
+            self.counted = self.frames;
         }
         Ok(())
     }

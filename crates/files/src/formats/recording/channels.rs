@@ -8,7 +8,8 @@ use crate::formats::recording::event::{ChannelInfo, UNNAMED_CHANNEL};
 #[derive(Clone, Debug, Default)]
 pub struct ChannelChoice {
     asked: Option<String>,
-    names: Vec<String>,
+    /// The names of the channels so far; `unnamed` for a channel without a name.
+    pub names: Vec<String>,
     chosen: Option<usize>,
 }
 
@@ -49,11 +50,6 @@ impl ChannelChoice {
         let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
         (!names.is_empty()).then(|| no_channel(asked, &names))
     }
-
-    /// Returns the names of the channels so far; `unnamed` for a channel without a name.
-    pub fn names(&self) -> &[String] {
-        &self.names
-    }
 }
 
 /// Returns the message that a recording has no channel of this name; it lists the others.
@@ -92,7 +88,7 @@ mod tests {
             [0, 1, 2].map(|index| choice.takes(index)),
             [false, true, false]
         );
-        assert_eq!(choice.names(), ["left", "right", "right"]);
+        assert_eq!(choice.names, ["left", "right", "right"]);
         assert_eq!(choice.missing(), None);
     }
 

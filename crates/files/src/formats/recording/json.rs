@@ -87,7 +87,7 @@ pub(super) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), S
             // A line that is too long.
             Err(error) => Err(error),
         };
-        let is_rest = sink.options.is_joined && lines.number() == 1;
+        let is_rest = sink.options.is_joined && lines.number == 1;
         let error = match read {
             Ok(line) => {
                 let size = frame.size();
@@ -113,7 +113,7 @@ pub(super) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), S
             return Err(foreign(kind).into());
         }
         if !is_rest {
-            sink.damage(error.in_line(lines.number()), lines.line())?;
+            sink.damage(error.in_line(lines.number), lines.line())?;
         }
     }
 }

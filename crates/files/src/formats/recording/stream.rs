@@ -52,6 +52,7 @@ impl StreamCounts {
 #[derive(Debug)]
 pub struct StreamReader {
     options: ReadOptions,
+    /// Once it is known.
     format: Option<&'static Format>,
     /// The format of the content before.
     before: Option<&'static Format>,
@@ -90,11 +91,6 @@ impl StreamReader {
             state: ReadState::default(),
             options,
         }
-    }
-
-    /// The format, once it is known.
-    pub fn format(&self) -> Option<&'static Format> {
-        self.format
     }
 
     /// Prepares for the first byte of other content, perhaps in another format: a file was replaced. The channels and

@@ -307,7 +307,7 @@ impl Table<'_, '_> {
         let mut comment = None;
         let mut above: Option<(u64, Vec<u8>)> = None;
         while self.advance()? {
-            let (number, line) = (self.lines.number(), self.lines.line());
+            let (number, line) = (self.lines.number, self.lines.line());
             let (_, fields) = bare(line);
             if is_blank(fields) {
                 // Names stand right above the numbers; a greeting may not.
@@ -382,7 +382,7 @@ impl Table<'_, '_> {
                 let squared = square(channel.cells, 2).filter(|_| given.is_none());
                 let Some(size) = own.or(squared) else {
                     let (cells, is_named) = (channel.cells, layout.names.is_some());
-                    return Err(misfit(cells, given, self.lines.number(), is_named).into());
+                    return Err(misfit(cells, given, self.lines.number, is_named).into());
                 };
                 channel.size = Some(size);
                 if index == 0 && own.is_none() {
@@ -566,7 +566,7 @@ impl Table<'_, '_> {
         let mut skipping = layout.in_rows && self.is_inside;
         loop {
             let more = self.advance()?;
-            let number = self.lines.number();
+            let number = self.lines.number;
             if !is_blank(self.lines.torn()) {
                 let error = in_line(number + 1, "no line break after it");
                 return if skipping {

@@ -90,7 +90,7 @@ pub(super) struct TextLines<R> {
     input: R,
     line: Vec<u8>,
     /// The number of that line; 0 before the first.
-    number: u64,
+    pub(super) number: u64,
     /// The number of the last line that was read from the input.
     read: u64,
     /// Lines that are read again, the next one last.
@@ -110,10 +110,6 @@ impl<R: BufRead> TextLines<R> {
             ahead: Vec::new(),
             is_cut: false,
         }
-    }
-
-    pub(super) fn number(&self) -> u64 {
-        self.number
     }
 
     pub(super) fn line(&self) -> &[u8] {
@@ -462,7 +458,7 @@ mod tests {
         let mut lines = TextLines::new(text);
         let mut found = Vec::new();
         while lines.advance().expect("short lines") {
-            found.push((lines.number(), lines.line().to_owned()));
+            found.push((lines.number, lines.line().to_owned()));
         }
         let expected = [&b"one"[..], b"", b"\xef\xbb\xbf", b" two"];
         let expected: Vec<_> = (1..).zip(expected.map(<[u8]>::to_vec)).collect();
@@ -483,10 +479,7 @@ mod tests {
     fn padding_is_not_content() {
         let mut lines = TextLines::new(&b" ,,\n\t\nROWS 2,,\n,"[..]);
         assert!(lines.advance_to_content().expect("short lines"));
-        assert_eq!(
-            (lines.number(), unpadded(lines.line())),
-            (3, &b"ROWS 2"[..])
-        );
+        assert_eq!((lines.number, unpadded(lines.line())), (3, &b"ROWS 2"[..]));
         assert!(!lines.advance_to_content().expect("short lines"));
     }
 

@@ -190,7 +190,7 @@ pub(crate) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), S
     let mut skipping = sink.options.is_joined;
     loop {
         let more = sink.advance(&mut lines)?;
-        let number = lines.number() + u64::from(!more);
+        let number = lines.number + u64::from(!more);
         let line = lines.line().trim_ascii();
         skipping &= !line.starts_with(b"array(");
         if more && line != b"---" {

@@ -80,7 +80,7 @@ fn header<R: BufRead>(lines: &mut TextLines<R>) -> Result<(FrameSize, ChannelInf
             "COMMENTS" | "COMMENTS:" => _ = has_unit.get_or_insert(info.unit.is_some()),
             _ => {
                 if let Some(known) = KEYS.into_iter().find(|&known| known == key) {
-                    let value = || (value.to_owned(), lines.number());
+                    let value = || (value.to_owned(), lines.number);
                     first.entry(known).or_insert_with(value);
                 }
             }
@@ -93,7 +93,7 @@ fn header<R: BufRead>(lines: &mut TextLines<R>) -> Result<(FrameSize, ChannelInf
     };
     let (columns, rows) = (side("COLS").transpose()?, side("ROWS").transpose()?);
     let size = FrameSize::of_sides(columns, rows)
-        .ok_or_else(|| in_line(lines.number(), "the header has no ROWS or no COLS"))?;
+        .ok_or_else(|| in_line(lines.number, "the header has no ROWS or no COLS"))?;
     info.size = Some(size);
     let value = |key| first.get(key).map(|(value, _)| &**value);
     info.start = value("TIME").map(str::to_owned);
@@ -126,12 +126,12 @@ pub(crate) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), S
     for number in 0.. {
         if !lines.advance_to_content()? {
             let message = "ends here, expected another frame or '@@'";
-            return Err(in_line(lines.number() + 1, message).into());
+            return Err(in_line(lines.number + 1, message).into());
         }
         if lines.line().trim_ascii_start().starts_with(b"@@") {
             break;
         }
-        let title = title(lines.line(), lines.number())?;
+        let title = title(lines.line(), lines.number)?;
         frame.label = Some(Label::Number(title.label));
         let by_label = of_label(title.label, &mut first, info.seconds_per_frame);
         // If earlier titles have no time, the first one that has counts from the first frame by its label.
@@ -171,10 +171,10 @@ fn values<R: BufRead>(lines: &mut TextLines<R>, frame: &mut Frame) -> Result<(),
         let is_end = !lines.advance()?;
         if is_end || is_blank(lines.line()) {
             let message = format!("the frame ends here, expected {}", counted(rows, "row"));
-            return Err(in_line(lines.number() + u64::from(is_end), message));
+            return Err(in_line(lines.number + u64::from(is_end), message));
         }
         let fields = Separator::Byte(b',').split(lines.line());
-        text::fill_row(row, fields, lines.number(), |field| match field {
+        text::fill_row(row, fields, lines.number, |field| match field {
             b"B" | b"b" => Some(f64::NAN),
             field => text::read_value(field),
         })?;

@@ -85,7 +85,7 @@ pub(crate) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), S
                 if matches!(next, Ok(true)) && is_value(&pair(lines.line()).0) {
                     let rows = counted(frame.rows(), "row");
                     let message = format!("more values, expected {rows} of them as Rows says");
-                    return Err(in_line(lines.number(), message).into());
+                    return Err(in_line(lines.number, message).into());
                 }
                 state.give(&mut frame, sink)?;
                 more = next?;
@@ -96,7 +96,7 @@ pub(crate) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), S
                 let fields = Separator::Byte(b',').split(lines.line());
                 *left = left.saturating_sub(fields.filter(|field| !field.is_empty()).count());
             }
-            _ => state.line(&key, &value, lines.number())?,
+            _ => state.line(&key, &value, lines.number)?,
         }
         more = lines.advance_to_content()?;
     }
@@ -110,7 +110,7 @@ pub(crate) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), S
         _ if sensors < before => "ends inside a FRAME, expected SENSOR",
         _ => return Ok(()),
     };
-    Err(in_line(lines.number() + 1, message).into())
+    Err(in_line(lines.number + 1, message).into())
 }
 
 fn is_value(field: &str) -> bool {
@@ -182,7 +182,7 @@ impl XsensorState {
     ) -> Result<(), ReadError> {
         let Some(size) = FrameSize::of_sides(self.sides[0], self.sides[1]) else {
             let message = "SENSELS of a sensor without Rows and Columns";
-            return Err(in_line(lines.number(), message));
+            return Err(in_line(lines.number, message));
         };
         self.info.size = Some(size);
         frame.reset(size);
@@ -190,10 +190,10 @@ impl XsensorState {
             if !lines.advance_to_content()? {
                 let rows = counted(size.rows(), "row");
                 let message = format!("ends inside a frame, expected {rows}");
-                return Err(in_line(lines.number() + 1, message));
+                return Err(in_line(lines.number + 1, message));
             }
             let fields = Separator::Byte(b',').split(lines.line());
-            text::fill_row(row, fields, lines.number(), decimal)?;
+            text::fill_row(row, fields, lines.number, decimal)?;
         }
         Ok(())
     }
