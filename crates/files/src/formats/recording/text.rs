@@ -54,7 +54,11 @@ pub(super) fn read_number(text: &[u8]) -> Option<f64> {
     let Some((whole, negative, decimals)) = digits(text, b".", EXACT_DIGITS) else {
         return slow(text);
     };
-    #[expect(clippy::cast_precision_loss, reason = "15 digits are exact")]
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        reason = "15 digits are exact"
+    )]
     let value = whole as u64 as f64 / 10_u64.pow(decimals) as f64;
     Some(if negative { -value } else { value })
 }

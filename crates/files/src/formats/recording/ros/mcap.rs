@@ -132,51 +132,42 @@ impl McapState<'_, '_> {
                 let (head, data) = rest.split_first_chunk::<20>().ok_or_else(broken)?;
                 if let Some((topic, kind)) = self.topics.get(&id).cloned() {
                     self.time = head[4..12].try_into().map_or(0, u64::from_le_bytes);
-                    let read = self.message(&topic, kind, data)?;
-                    let message = || ReadError::new(format!("{topic}: a message is broken"));
-                    read.ok_or_else(message)?;
+                    self.message(&topic, kind, data)?;
                 }
             }
         }
         Ok(())
     }
 
-    /// Reads the frames of a message; None if it is broken.
-    fn message(&mut self, topic: &str, kind: MessageKind, data: &[u8]) -> Result<Option<()>, Stop> {
+    /// Reads the frames of a message.
+    fn message(&mut self, topic: &str, kind: MessageKind, data: &[u8]) -> Result<(), Stop> {
+        let broken = || ReadError::new(format!("{topic}: a message is broken"));
         self.values.clear();
-        let Some(mut cdr) = CdrReader::new(data) else {
-            return Ok(None);
-        };
+        let mut cdr = CdrReader::new(data).ok_or_else(broken)?;
         match kind {
             MessageKind::Array(number) => {
-                let Some(sizes) = cdr.multi_array(number, &mut self.values) else {
-                    return Ok(None);
-                };
+                let sizes = cdr.multi_array(number, &mut self.values);
+                let sizes = sizes.ok_or_else(broken)?;
                 let stated = matrix_size(&sizes);
                 let size = arranged(self.values.len(), stated, self.sink.options.size);
                 self.give(topic, size)?;
             }
-            MessageKind::Image => match cdr.image(&mut self.values) {
-                Some(ImageFrame::Values(size)) => self.give(topic, Some(size))?,
-                Some(ImageFrame::OfCamera) => {}
-                None => return Ok(None),
+            MessageKind::Image => match cdr.image(&mut self.values).ok_or_else(broken)? {
+                ImageFrame::Values(size) => self.give(topic, Some(size))?,
+                ImageFrame::OfCamera => {}
             },
             MessageKind::TactileState => {
-                let Some(count) = cdr.header().and_then(|()| cdr.count(8)) else {
-                    return Ok(None);
-                };
-                for _ in 0..count {
+                let count = cdr.header().and_then(|()| cdr.count(8));
+                for _ in 0..count.ok_or_else(broken)? {
                     self.values.clear();
-                    let name = cdr.text();
+                    let name = cdr.text().ok_or_else(broken)?;
                     let numbers = cdr.numbers(Number::F32, &mut self.values);
-                    let (Some(name), Some(())) = (name, numbers) else {
-                        return Ok(None);
-                    };
+                    numbers.ok_or_else(broken)?;
                     self.give(&format!("{topic}#{name}"), None)?;
                 }
             }
         }
-        Ok(Some(()))
+        Ok(())
     }
 
     /// Reports the values as a frame of a channel.
