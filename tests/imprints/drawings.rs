@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use serde::Deserialize;
 use taxel_core::outline::{Outline, Ring};
 use taxel_core::parameter::Parameter;
+use taxel_core::source::Source;
 use taxel_core::touch::Plane;
 use taxel_files::formats::{OutlineOptions, OutlineUnit, read_outline};
 
@@ -52,8 +53,7 @@ impl Touch {
             Parameter::Angle => Some(self.angle),
             _ => Some(1.0),
         };
-        let placed = outline
-            .clone()
+        let placed = Source::from(outline.clone())
             .placed(plane.sensor(), place)
             .expect("in range");
         assert_eq!(

@@ -6,6 +6,7 @@ use taxel_core::figure::{Figure, FigureBuilder};
 use taxel_core::outline::{EllipseRing, Outline, Ring};
 use taxel_core::parameter::Parameter;
 use taxel_core::sensor::Sensor;
+use taxel_core::source::Source;
 use taxel_core::touch::Plane;
 
 use crate::common::Random;
@@ -71,7 +72,7 @@ fn same(
     let mut active = 0;
     for _ in 0..POSES / ALIKE {
         let (figure, rings) = make(sizes(&mut random));
-        let outline = Outline::new(rings, None)?;
+        let outline = Source::Outline(Outline::new(rings, None)?);
         for _ in 0..ALIKE {
             let mut place = |low: i32, high: i32, parts: i32| {
                 let parts = if is_continuous { 1_000_000 } else { parts };

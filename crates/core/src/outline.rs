@@ -10,7 +10,6 @@
 use std::sync::Arc;
 
 use crate::geometry::{Double, Ellipse, Extent, Pen, Point, Real, Side, Solid, Turn};
-use crate::parameter::number::to_decimals;
 use crate::parameter::{Parameter, ParameterError};
 use crate::picture::PICTURE_PARAMETERS;
 use crate::sensor::Sensor;
@@ -46,7 +45,7 @@ pub struct EllipseRing {
 /// The error for rings that do not make an outline; the message says which and why.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
-pub struct OutlineError(String);
+pub struct OutlineError(pub(crate) String);
 
 /// A shape of rings and its placement. The values are always finite, and the zooms above 0.
 ///
@@ -154,20 +153,6 @@ impl Outline {
         self
     }
 
-    /// Returns the same outline, placed by the values that `value` returns for [`PICTURE_PARAMETERS`], each in range on
-    /// the sensor.
-    ///
-    /// # Errors
-    /// Returns the error of the first value that is missing or out of range.
-    pub fn placed(
-        mut self,
-        sensor: &Sensor,
-        value: impl FnMut(Parameter) -> Option<f64>,
-    ) -> Result<Self, ParameterError> {
-        self.values = Values::new(PICTURE_PARAMETERS, sensor, value)?;
-        Ok(self)
-    }
-
     /// Returns the same outline with one parameter changed to `value`, in the parameter's unit.
     ///
     /// # Errors
@@ -227,32 +212,6 @@ impl Outline {
             form: Arc::new(form),
             ..self
         })
-    }
-
-    /// Refuses an outline that is longer than the larger side of the sensor, with the zooms but not turned.
-    pub(crate) fn check_size(&self, sensor: &Sensor) -> Result<(), OutlineError> {
-        let zooms = [Parameter::ZoomX, Parameter::ZoomY].map(|zoom| self.values.of(zoom));
-        let [width, height] = self.size();
-        let own = [width * zooms[0], height * zooms[1]];
-        let (length, side) = (own[0].max(own[1]), f64::from(sensor.side()));
-        if length <= side {
-            return Ok(());
-        }
-        let short = |cells: f64| to_decimals(cells, 3);
-        let said = |sides: [f64; 2]| {
-            let text = |unit: f64, name| match sides.map(|cells| short(cells * unit)) {
-                [length, 0.0] => format!("{length} {name}"),
-                [width, height] => format!("{width} × {height} {name}"),
-            };
-            let mm = self.form.pitch_mm.map(|pitch| text(pitch, "mm"));
-            text(1.0, "cells") + &mm.map_or(String::new(), |mm| format!(" ({mm})"))
-        };
-        refused(format!(
-            "{}, longer than the sensor's {} by {}",
-            said(own),
-            said([side, 0.0]),
-            said([length - side, 0.0])
-        ))
     }
 
     /// The number of rotations within a full turn that map the outline onto itself; None if all do.

@@ -7,6 +7,7 @@ use std::fmt;
 use crate::figure::{Figure, FigureKind};
 use crate::geometry::{Pen, Real, Solid};
 use crate::outline::{Outline, OutlineError};
+use crate::parameter::number::to_decimals;
 use crate::parameter::{Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
 use crate::sensor::Sensor;
@@ -137,15 +138,31 @@ impl Source {
         }
     }
 
-    /// Refuses an outline whose bounding rectangle before rotation is longer than the larger side of the sensor.
+    /// Refuses an outline that is longer than the larger side of the sensor, with its zooms but not turned.
     ///
     /// # Errors
     /// Returns an error that says by how much, also in mm if the outline is in mm.
     pub fn check_size(&self, sensor: &Sensor) -> Result<(), OutlineError> {
-        match self {
-            Self::Outline(outline) => outline.check_size(sensor),
-            _ => Ok(()),
+        let Self::Outline(outline) = self else {
+            return Ok(());
+        };
+        let zoomed = |side: f64, zoom| side * outline.values.of(zoom);
+        let [width, height] = outline.size();
+        let length = zoomed(width, Parameter::ZoomX).max(zoomed(height, Parameter::ZoomY));
+        let longer = length - f64::from(sensor.side());
+        if longer <= 0.0 {
+            return Ok(());
         }
+        let said = |cells: f64| {
+            let mm = outline
+                .pitch_mm()
+                .map(|pitch| to_decimals(cells * pitch, 3));
+            let mm = mm.map_or(String::new(), |mm| format!(" ({mm} mm)"));
+            format!("{} cells{mm}", to_decimals(cells, 3))
+        };
+        let (length, longer) = (said(length), said(longer));
+        let text = format!("{length} long, {longer} longer than the sensor");
+        Err(OutlineError(text))
     }
 
     /// Returns the kind of figure; None for another shape.

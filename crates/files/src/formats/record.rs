@@ -325,11 +325,11 @@ mod tests {
             (r#""outline":[]"#.to_owned(), "outline: no rings"),
             (
                 format!(r#""outline":[{long}],"unit":"mm","sensor":{{"pitch_mm":2.5}}"#),
-                "outline: 24 × 9.6 cells (60 × 24 mm), longer than the sensor's 16 cells (40 mm) by 8 cells (20 mm)",
+                "outline: 24 cells (60 mm) long, 8 cells (20 mm) longer than the sensor",
             ),
             (
                 format!(r#""outline":[{long}]"#),
-                "outline: 60 × 24 cells, longer than the sensor's 16 cells by 44 cells",
+                "outline: 60 cells long, 44 cells longer than the sensor",
             ),
             (
                 format!(r#""outline":[{long}],"unit":"mm""#),
