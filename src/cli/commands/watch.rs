@@ -307,7 +307,7 @@ impl Watcher<'_> {
                     let options = self.request.options.of_recording();
                     RecordingFile::open(path, options)?.channel_names(None).0
                 }
-                _ => names.to_vec(),
+                _ => names.clone(),
             };
             let why = "several channels, choose one with --channel";
             return Err(self.refused(format!("{why}: {}", all.join(", "))));

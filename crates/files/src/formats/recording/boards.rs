@@ -352,6 +352,10 @@ enum Part {
 }
 
 /// A frame between an end and the next one.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "a byte means what all of them say"
+)]
 #[derive(Default)]
 struct SplitFrame {
     is_bracketed: bool,

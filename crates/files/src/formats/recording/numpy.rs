@@ -417,10 +417,10 @@ fn arrays<R: Read + Seek>(archive: &mut ZipArchive<R>) -> Result<Vec<ArchiveArra
 }
 
 /// The arrays whose numbers can be frames. Others, such as a list of poses, may lie beside them.
-fn channels<'a>(
-    arrays: &'a [ArchiveArray],
+fn channels(
+    arrays: &[ArchiveArray],
     asked: Option<FrameSize>,
-) -> Result<Vec<(&'a ArchiveArray, Layout)>, ReadError> {
+) -> Result<Vec<(&ArchiveArray, Layout)>, ReadError> {
     let may_be =
         |array: &&ArchiveArray| array.header.shape.len() > 1 && !array.header.code().is_empty();
     let arrays: Vec<_> = arrays.iter().filter(may_be).collect();
