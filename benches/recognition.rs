@@ -25,7 +25,7 @@ fn train() -> Model {
 
 /// Measures training, and the sweeps of its shapes.
 fn whole() {
-    let grids = training().grids.to_vec();
+    let grids = training().grids;
     let trained = Work::new(|| {
         black_box(train());
     });

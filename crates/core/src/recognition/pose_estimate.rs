@@ -265,7 +265,7 @@ mod tests {
     fn the_poses_of_an_imprint_agree_with_its_count_and_with_a_sum_by_hand() {
         let steps = GridSteps::of(10, "0:355:5");
         let training = Training::fitting(equal_figures(), steps).expect("they fit");
-        let grids = training.grids.to_vec();
+        let grids = training.grids.clone();
         let model = training.run().expect("not stopped");
         for shape in [0, 1, 2, 5] {
             let grid = &grids[shape];

@@ -741,7 +741,7 @@ mod tests {
             let other = Training::new(shapes.to_vec(), *grid.sensor(), anchor, *grid.ranges());
             other.expect("a set")
         };
-        let mut heavier = whole.shapes.to_vec();
+        let mut heavier = whole.shapes.clone();
         heavier[0].weight = 3;
         for (index, other) in [
             training(4.1),
