@@ -11,6 +11,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 mod commands;
 mod glossary;
 mod links;
+mod parts;
 mod recognition;
 mod screen;
 mod tables;
@@ -38,8 +39,11 @@ const BLOCKS: &[Block] = &[
     ("recognition-confusion", recognition::confusion),
     ("recognition-worth", recognition::worth),
     ("recognition-peers", recognition::peers),
-    ("recognition-mm", recognition::mm),
-    ("recognition-pitch", recognition::pitch),
+    ("parts-touch", parts::touch),
+    ("parts-pitch", parts::separate),
+    ("parts-train", parts::train),
+    ("parts-confusion", parts::confusion),
+    ("parts-recognise", parts::recognise),
 ];
 
 /// The paper's experiment with positions.
@@ -179,7 +183,13 @@ fn every_generated_part_is_up_to_date() {
 #[test]
 fn every_picture_is_drawn_by_the_program() {
     hold(Path::new("docs/screen.svg"), &screen::svg());
-    for (name, drawn) in [screen::explore_svgs(), screen::first_steps_svgs()].concat() {
+    for (name, drawn) in [
+        screen::explore_svgs(),
+        screen::first_steps_svgs(),
+        parts::svgs(),
+    ]
+    .concat()
+    {
         hold(&Path::new("docs").join(name).with_extension("svg"), &drawn);
     }
     hold(Path::new("docs/touch.svg"), &screen::touch_svg());

@@ -10,10 +10,7 @@ use crate::docs::commands::shell_in;
 /// The set of shapes that the page uses.
 const SET: &str = include_str!("../../../examples/figures.jsonl");
 
-/// The set whose lengths are in mm.
-const MM: &str = include_str!("../../../examples/mm.jsonl");
-
-/// Runs shell lines in a folder with both sets and the model of the first. Returns each line followed by its output.
+/// Runs shell lines in a folder with the set and its model. Returns each line followed by its output.
 fn shown(lines: &[&str]) -> String {
     trained();
     let shown = lines
@@ -37,7 +34,6 @@ fn trained() -> &'static str {
         fs::remove_dir_all(folder).ok();
         fs::create_dir_all(folder).expect("a folder can be made");
         fs::write(folder.join("figures.jsonl"), SET).expect("written");
-        fs::write(folder.join("mm.jsonl"), MM).expect("written");
         shell_in(folder, TRAIN)
     })
 }
@@ -62,28 +58,10 @@ pub(crate) fn peers() -> String {
     shown(&["taxel model confusion figures.npz --classifier all | head -5"])
 }
 
-pub(crate) fn mm() -> String {
-    format!("\n```json\n{MM}```\n\n")
-}
-
-pub(crate) fn pitch() -> String {
-    static PITCH: OnceLock<String> = OnceLock::new();
-    let pitch = || {
-        let line = "taxel model separate mm.jsonl --pitch 1:3:0.5 --positions 20 --want 0.05";
-        shown(&[&format!("{line} | grep -E 'error |×'")])
-    };
-    PITCH.get_or_init(pitch).clone()
-}
-
 /// The numbers in the text of the page must be those that the program prints.
 #[test]
 fn the_numbers_in_the_text_are_those_that_the_commands_print() {
     let page = crate::docs::document("docs/recognition.md");
-    let pitch = pitch();
-    assert!(pitch.contains("is 1.4 mm: 2.0 %") && page.contains("Cells of 1.4 mm are fine enough"));
-    let at_1_5 = pitch.lines().find(|line| line.starts_with("1.5 "));
-    assert!(at_1_5.is_some_and(|line| line.contains(" 6.6 %")));
-    assert!(page.contains("it is wrong in 6.6 %"));
     let limit = trained().lines().find(|line| line.starts_with("wrong"));
     assert!(limit.is_some_and(|line| line.contains(" 33.0 %")));
     assert!(page.contains("misnames at least 33 %") && page.contains("The limit is 0.330"));
