@@ -79,7 +79,7 @@ fn same(
                 f64::from(random.whole(low * parts, high * parts)) / f64::from(parts)
             };
             let (x0, y0, angle) = (place(-2, 12, 100), place(-2, 12, 100), place(0, 359, 1));
-            let figure = figure.clone().at(x0, y0).angle(angle).on(&sensor)?;
+            let figure = figure.at(x0, y0).angle(angle).on(&sensor)?;
             let outline = outline
                 .clone()
                 .placed(&sensor, |parameter| match parameter {
