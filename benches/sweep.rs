@@ -47,7 +47,7 @@ const SAMPLE: u64 = 20_000;
 const ROUNDS: usize = 7;
 
 /// The shapes that are measured, of all shapes for which sweeps are compared with touches.
-const MEASURED: [&str; 11] = [
+const MEASURED: [&str; 13] = [
     "rectangle 6 x 3",
     "triangle 6",
     "hexagon 3 wall 1",
@@ -57,6 +57,8 @@ const MEASURED: [&str; 11] = [
     "ellipse 5 x 3",
     "ellipse 5 x 3 wall 1",
     "circle 4 wall 2",
+    "outline of 40 edges",
+    "drilled plate",
     "picture: scattered",
     "picture: ring",
 ];

@@ -54,6 +54,16 @@ pub(crate) fn outline(polygons: &[&[[f64; 2]]], ellipses: &[[f64; 5]]) -> Source
     Source::Outline(outline.expect("rings that do not cross"))
 }
 
+/// Returns a wheel of 20 teeth. Its points are rounded to thousandths, so it has no symmetry.
+fn gear() -> Source {
+    let points = (0..40).map(|point| {
+        let radius = if point % 2 == 0 { 3.0 } else { 2.4 };
+        let (sin, cos) = libm::sincos(f64::from(9 * point).to_radians());
+        [cos, sin].map(|part| (1000.0 * (3.01 + radius * part)).round() / 1000.0)
+    });
+    outline(&[&points.collect::<Vec<_>>()], &[])
+}
+
 pub(crate) fn sensor(columns: u8, rows: u8, threshold: f64) -> Sensor {
     let sensor = Sensor::new(columns, rows).expect("sides are in range");
     sensor
@@ -139,6 +149,7 @@ pub(crate) fn cases() -> Vec<Case> {
                 &[],
             ),
         ),
+        case("outline of 40 edges", gear()),
         case(
             "drilled plate",
             outline(
