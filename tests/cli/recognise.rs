@@ -476,14 +476,18 @@ fn frames_are_named_by_a_model() {
     assert_eq!(framed["frame"], Value::Null);
     let text = place.done("frames touch.jsonl --peak --at-least 5 --model r");
     assert!(text.contains("\nd  >99.9 %  fits exactly at "), "{text}");
-    // A cell without a value may be covered. Without it and a corner, the touch fits as well as allowed.
-    let gap = row("0,9,null,9,9,0");
+    // A masked cell may be covered. Without it and a corner, the touch fits as well as allowed.
+    let gap = row("0,9,0,9,9,0");
     let corner = row("0,0,9,9,9,0");
     place.write(
         "gap.jsonl",
         &frame([&empty, &full, &gap, &full, &corner, &empty]),
     );
-    let near = "gap.jsonl --at-least 5 --model r --tolerance";
+    place.write(
+        "mask.txt",
+        "......\n......\n..#...\n......\n......\n......\n",
+    );
+    let near = "gap.jsonl --at-least 5 --mask mask.txt --model r --tolerance";
     for (tolerance, state) in [(0, "unknown"), (1, "likely")] {
         let named =
             place.json(&format!("frames {near} {tolerance} --all --json"))["recognition"].take();

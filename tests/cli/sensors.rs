@@ -83,7 +83,7 @@ fn every_line_that_can_be_run_works() {
         assert!(line.contains(" > ") || !run.stdout.is_empty(), "{line}");
         if line.contains("--model") {
             let text = String::from_utf8_lossy(&run.stdout);
-            let named = ["hexagon: certain", "\"answer\":\"hexagon\""];
+            let named = ["hexagon  ", "\"answer\":\"hexagon\""];
             assert!(
                 named.iter().any(|name| text.contains(name)),
                 "{line}: {text}"

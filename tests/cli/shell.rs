@@ -61,6 +61,11 @@ fn examples(help: &str) -> Vec<String> {
 fn furnished(folder: &Path) {
     let write = |name: &str, text: &str| fs::write(folder.join(name), text).expect("written");
     write("imprint.txt", ".##.\n#..#\n.##.\n");
+    let cells: Vec<String> = (1..=16).map(|cell| format!("s{cell}")).collect();
+    let values = vec!["12"; 16].join(",");
+    let labelled = format!("label,{}\nwasher,{values}\n", cells.join(","));
+    write("labelled.csv", &labelled);
+    write("dead.txt", "....\n..#.\n....\n");
     fs::create_dir(folder.join("parts")).expect("made");
     let bracket = include_str!("../../examples/parts/bracket-left.svg");
     write("parts/bracket.svg", bracket);

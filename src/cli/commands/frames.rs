@@ -117,7 +117,7 @@ Examples:
   taxel frames recording.csv --frame 3 --low 5 --high 20 --heat --ascii
   taxel frames recording.csv --peak --at-least 10 --heat --export touch.svg
   taxel frames recording.csv --peak --at-least 10 --model parts --noise 0.01
-  taxel frames recording.csv --all --at-least 10 --model parts --expect-labels
+  taxel frames labelled.csv --all --at-least 10 --model parts --expect-labels
   taxel frames recording.csv --noise-report --at-least 10 --export mask.txt
   taxel frames plain.csv --rows 4 --columns 5 --label-column 21 \\
     --time-column 22:ms --crop 1,0,3x3 --json";
@@ -180,7 +180,9 @@ impl Frames {
         let pipeline = self
             .reading
             .pipeline(&cx.settings.watch_request().pipeline)?;
-        let found = self.naming.find(&cx.shelf)?;
+        let found = self
+            .naming
+            .find(pipeline.processing.view.mask.as_ref(), &cx.shelf)?;
         let recording = RecordingFile::open(&self.file, self.reading.reading())?;
         let namer = found.map(FoundNamer::ready).transpose()?;
         let answering = Answering {
@@ -752,14 +754,13 @@ impl Answering<'_> {
         if let Some(content) = kept.keep(drawn, shape, &self.cx.shelf, &mut lines)? {
             return self.write(content);
         }
-        let dead = processed.tared.cells_where(|_, value| value.is_nan());
         if self.asked.json {
             for note in &lines[titles.len()..] {
                 self.cx.note(note);
             }
             let mut line = json::ascii(&answer).into_bytes();
             match &self.namer {
-                Some(namer) => namer.extend(&mut line, Some(&imprint), &dead),
+                Some(namer) => namer.extend(&mut line, Some(&imprint)),
                 None => line.push(b'\n'),
             }
             return self.write(line);
@@ -770,7 +771,7 @@ impl Answering<'_> {
             text += &(heat_map(values, &charset.line(&unit(info)), charset) + "\n");
         }
         text += &report::table(&imprint, &lines, pitch);
-        let named = self.namer.as_ref().map(|namer| namer.text(&imprint, &dead));
+        let named = self.namer.as_ref().map(|namer| namer.text(&imprint));
         if let Some(named) = named.filter(|named| !named.is_empty()) {
             text.push('\n');
             text += &named;
@@ -843,8 +844,7 @@ impl Answering<'_> {
                 (Some(label), Some(imprint)) => {
                     let label = label.to_string();
                     let own = folded(&label);
-                    let dead = processed.tared.cells_where(|_, value| value.is_nan());
-                    let answer = namer.terms.answer(&namer.model, &[imprint], Some(&dead));
+                    let answer = namer.answer(&[imprint]).answer;
                     trial.add(&label, |name| folded(name) == own, &answer);
                 }
             }

@@ -116,11 +116,18 @@ pub(crate) struct NamingFlags {
 }
 
 impl NamingFlags {
-    /// What names frames, if it is asked for, once a built-in model is trained: [`FoundNamer::ready`].
-    pub(crate) fn find(&self, shelf: &Shelf) -> Result<Option<FoundNamer>, Failure> {
+    /// What names frames, if it is asked for, once a built-in model is trained: [`FoundNamer::ready`]. The cells of
+    /// `mask` are dead.
+    pub(crate) fn find(
+        &self,
+        mask: Option<&Imprint>,
+        shelf: &Shelf,
+    ) -> Result<Option<FoundNamer>, Failure> {
         let terms = self.terms.terms()?;
         let found = self.model.as_ref().map(|model| model::find(model, shelf));
-        Ok(found.transpose()?.map(|found| FoundNamer(found, terms)))
+        Ok(found
+            .transpose()?
+            .map(|found| FoundNamer(found, terms, mask.copied())))
     }
 }
 
@@ -157,7 +164,7 @@ pub(crate) fn noise(text: &str) -> Result<f64, String> {
 
 /// A [`Namer`] whose model may have to be trained.
 #[derive(Debug)]
-pub(crate) struct FoundNamer(FoundModel, Terms);
+pub(crate) struct FoundNamer(FoundModel, Terms, Option<Imprint>);
 
 impl FoundNamer {
     /// Trains the shapes of a built-in model that are not in the cache.
@@ -165,7 +172,7 @@ impl FoundNamer {
         Ok(Namer {
             model: model::ready(self.0, false)?,
             terms: self.1,
-            mask: None,
+            mask: self.2,
             top: None,
             asks_pose: false,
             pitch_mm: None,
@@ -188,7 +195,8 @@ pub(crate) struct Namer {
 }
 
 impl Namer {
-    fn answer<'a>(&'a self, touches: &[Imprint], dead: Option<&'a Imprint>) -> Recognition<'a> {
+    pub(crate) fn answer(&self, touches: &[Imprint]) -> Recognition<'_> {
+        let dead = self.mask.as_ref();
         Recognition {
             namer: self,
             answer: self.terms.answer(&self.model, touches, dead),
@@ -207,7 +215,7 @@ impl Namer {
                 return Err(Failure::new(text));
             }
         }
-        let mut answer = self.answer(touches, mask);
+        let mut answer = self.answer(touches);
         if let Some(touch) = touches.last().filter(|_| self.asks_pose) {
             answer.pose = self.pose(touch, &answer.answer)?;
         }
@@ -233,23 +241,23 @@ impl Namer {
     }
 
     /// Adds the key `recognition` to the end of a frame's line of JSON: the answer of `taxel recognise` to the
-    /// imprint, or null if no taxel is active. `dead` has the cells without a value.
-    pub(crate) fn extend(&self, line: &mut Vec<u8>, imprint: Option<&Imprint>, dead: &Imprint) {
+    /// imprint, or null if no taxel is active.
+    pub(crate) fn extend(&self, line: &mut Vec<u8>, imprint: Option<&Imprint>) {
         line.truncate(line.iter().rposition(|&byte| byte == b'}').unwrap_or(0));
         line.extend(b",\"recognition\":");
         match imprint.filter(|imprint| !imprint.is_empty()) {
             None => line.extend(b"null"),
-            Some(&imprint) => json::extend_ascii(line, &self.answer(&[imprint], Some(dead))),
+            Some(&imprint) => json::extend_ascii(line, &self.answer(&[imprint])),
         }
         line.extend(b"}\n");
     }
 
     /// The answer to an imprint in words; empty if no taxel is active.
-    pub(crate) fn text(&self, imprint: &Imprint, dead: &Imprint) -> String {
+    pub(crate) fn text(&self, imprint: &Imprint) -> String {
         if imprint.is_empty() {
             return String::new();
         }
-        self.answer(&[*imprint], Some(dead)).text(imprint)
+        self.answer(&[*imprint]).text(imprint)
     }
 }
 
@@ -273,11 +281,10 @@ impl Recognise {
             return Err(Failure::new(text + &shapes + &near)).named("--expect");
         }
         let namer = Namer {
-            mask: mask.map(|mask| *mask.imprint()),
             top: self.top.map(wide),
             asks_pose: self.pose,
             pitch_mm,
-            ..FoundNamer(found, terms).ready()?
+            ..FoundNamer(found, terms, mask.map(|mask| *mask.imprint())).ready()?
         };
         match input {
             Question::Touch(content) => self.answer_imprint(&content, &namer, cx),

@@ -135,7 +135,7 @@ fn watch(request: &WatchRequest, naming: &NamingFlags, cx: &Context) -> Result<(
     check(source, request)?;
     // Errors in these are reported before a recording begins. Training shows no progress: standard error is for
     // oddities of the source.
-    let namer = naming.find(&cx.shelf)?;
+    let namer = naming.find(request.pipeline.processing.view.mask.as_ref(), &cx.shelf)?;
     let lines = LineWriter::start(&signals.stopped, namer)?;
     let recording = recording(source, request)?;
     let mut watcher = Watcher {
@@ -410,8 +410,7 @@ impl Watcher<'_> {
             processed,
         };
         let line = json::ascii(&answer) + "\n";
-        let dead = processed.tared.cells_where(|_, value| value.is_nan());
-        let line = (line.into_bytes(), processed.imprint, dead);
+        let line = (line.into_bytes(), processed.imprint);
         if lines.send(line, self.may_give_up) {
             Ok(())
         } else {
@@ -595,8 +594,8 @@ const PAUSE: Duration = Duration::from_millis(1);
 /// The time that a reader has, after a signal, to read what is waiting.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// A line, with the imprint of its frame and the cells without a value.
-type Line = (Vec<u8>, Option<Imprint>, Imprint);
+/// A line, with the imprint of its frame.
+type Line = (Vec<u8>, Option<Imprint>);
 
 /// Writes lines to standard output on a thread of its own, so that a slow reader does not hold up a recording. With a
 /// model, that thread also names each imprint.
@@ -671,11 +670,11 @@ fn write_lines(waiting: &Receiver<Line>, namer: Option<&Namer>) -> io::Result<()
             }
             next => next.ok(),
         };
-        let Some((mut line, imprint, dead)) = next else {
+        let Some((mut line, imprint)) = next else {
             return output.flush();
         };
         if let Some(namer) = namer {
-            namer.extend(&mut line, imprint.as_ref(), &dead);
+            namer.extend(&mut line, imprint.as_ref());
         }
         output.write_all(&line)?;
     }

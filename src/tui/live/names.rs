@@ -40,7 +40,7 @@ impl ShapeNames {
         }
     }
 
-    /// Names an imprint, unless it is the one that was named last. `dead` has the cells without a value.
+    /// Names an imprint, unless it is the one that was named last. `dead` has the cells of the mask.
     pub fn name(&mut self, imprint: Option<&Imprint>, dead: Option<&Imprint>) {
         let imprint = imprint.filter(|imprint| !imprint.is_empty());
         if let (Some(imprint), Some(Ok(model))) = (imprint, &self.model) {

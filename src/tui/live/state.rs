@@ -180,7 +180,7 @@ impl Live {
 
     pub fn name(&mut self) {
         let reading = self.reading.as_ref();
-        let dead = reading.map(|reading| reading.values.cells_where(|_, value| value.is_nan()));
+        let dead = self.request.pipeline.processing.view.mask;
         let imprint = reading.and_then(|reading| reading.imprint.as_ref());
         self.names.name(imprint, dead.as_ref());
     }

@@ -90,10 +90,11 @@ pub(crate) struct Confusion {
     test: Option<u64>,
     /// Also touch these shapes, which the model does not have: unknown is right
     #[arg(long, value_name = "FILE.jsonl|NAME", value_parser = name_or_path(), num_args = 1..)]
-    #[arg(requires = "test")]
+    #[arg(requires = "test", conflicts_with_all = OTHERS)]
     foreign: Vec<OsString>,
     /// Taxels that may differ from the fit; by default depends on the imprint
-    #[arg(long, value_name = "K", value_parser = whole(0_u32..), requires = "test")]
+    #[arg(long, value_name = "K", value_parser = whole(0_u32..))]
+    #[arg(requires = "test", conflicts_with_all = OTHERS)]
     tolerance: Option<u32>,
     /// Use only these descriptors, such as na,p
     #[arg(long, value_name = "KEY,...")]

@@ -205,12 +205,16 @@ fn straighten(rings: &mut [Points]) {
         *counts.entry(*point).or_insert(0) += 1;
     }
     for ring in rings {
-        let Some(mut before) = ring.last().copied() else {
+        // The first point stays: of two that nearly coincide, each could otherwise be left out because of the other.
+        let first = (0..ring.len()).min_by_key(|&index| (ring[index].x, ring[index].y));
+        ring.rotate_left(first.unwrap_or_default());
+        let old = std::mem::take(ring);
+        ring.extend(old.first());
+        let Some(mut before) = old.first().copied() else {
             continue;
         };
-        let old = std::mem::take(ring);
-        let next = old.iter().cycle().skip(1);
-        for (&point, &next) in old.iter().zip(next) {
+        let next = old.iter().cycle().skip(2);
+        for (&point, &next) in old.iter().skip(1).zip(next) {
             let [to_point, to_next] = [point - before, next - before];
             let beside = to_point.cross_product(to_next).unsigned_abs();
             if counts[&point] > 1 || beside.saturating_pow(2) > to_next.sqr_length() {
