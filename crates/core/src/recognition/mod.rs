@@ -8,7 +8,8 @@
 //! classifier of one touch makes fewer errors on these poses.
 //!
 //! ```text
-//! shapes + poses -> Training -> Model -> Answer       to an imprint: posterior, state, nearest imprint
+//! shapes + poses -> Training -> Model -> Answer       to an imprint: posterior, fit, state, nearest imprint
+//!                                     -> Fit          a pose between the trained ones that leaves nearly the imprint
 //!                                     -> Noise        the same with taxels that flip or are dead
 //!                                     -> scan         all keys in all places: the nearest, and those within a distance
 //!                                     -> Evaluation   of the model: the limit of one touch
