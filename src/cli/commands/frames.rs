@@ -11,6 +11,7 @@ use std::ops::{ControlFlow, Range};
 use std::path::PathBuf;
 
 use clap::{Arg, ArgGroup};
+use serde::Serialize;
 use serde_json::json;
 use taxel_core::frame::{
     FlipCounter, FlipReport, Frame, FrameError, FrameSize, Label, Peak, Processed, Rule,
@@ -274,6 +275,16 @@ impl Scan {
         }
         scan
     }
+}
+
+/// The list of channels, with its keys in this order.
+#[derive(Serialize)]
+struct ListJson<'a> {
+    /// Null if a damage comes before the format is certain.
+    format: Option<&'static str>,
+    channels: Vec<Record<'static>>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    notes: &'a [String],
 }
 
 impl Channel {
@@ -553,13 +564,12 @@ impl Answering<'_> {
         };
         let format = scan.format.map(|format| format.name);
         if self.asked.json {
-            // The format is null if a damage comes before it is certain.
-            let records: Vec<_> = channels.iter().map(Channel::record).collect();
-            let mut list = vec![("format", json!(format)), ("channels", json!(records))];
-            if !scan.plain.is_empty() {
-                list.push(("notes", json!(scan.plain)));
-            }
-            return self.write(json::ascii(&Record(list)) + "\n");
+            let list = ListJson {
+                format,
+                channels: channels.iter().map(Channel::record).collect(),
+                notes: &scan.plain,
+            };
+            return self.write(json::ascii(&list) + "\n");
         }
         let count = counted(channels.len() as u64, "channel");
         let mut lines = vec![format!("{}, {count}", format.unwrap_or("damaged"))];
