@@ -17,8 +17,8 @@ pub struct Terms {
 }
 
 impl Terms {
-    /// Names the shape that left some touches. The active taxels of `dead` are left out, such as the cells of a frame
-    /// that have no value.
+    /// Names the shape that left some touches. The active taxels of `dead` are left out, such as the masked cells of a
+    /// frame.
     pub fn answer(&self, model: &Model, touches: &[Imprint], dead: Option<&Imprint>) -> Answer {
         let noise = self.noise.and_then(|flip| Noise::new(flip).ok());
         let mut evidence = Evidence::of(touches).under(noise.as_ref()).without(dead);
