@@ -604,6 +604,24 @@ mod tests {
     }
 
     #[test]
+    fn distances_take_the_best_shift() {
+        let read = |text: &str| text.parse::<Imprint>().expect("an imprint");
+        for (one, other, expected) in [
+            ("##.#", "#.#", 1),
+            ("#.\n##", "##\n.#\n.#", 3),
+            ("#", "###\n###", 5),
+            ("#..\n...\n..#", "#..\n...\n..#", 0),
+        ] {
+            let [one, other] = [one, other].map(|text| Template::of(Some(&read(text))));
+            assert_eq!(one.distance(&other, u32::MAX), expected);
+            assert_eq!(other.distance(&one, u32::MAX), expected);
+            // The result never exceeds the given bound.
+            assert_eq!(one.distance(&other, expected + 1), expected);
+            assert_eq!(one.distance(&other, 0), 0);
+        }
+    }
+
+    #[test]
     fn an_empty_imprint_differs_in_all_taxels() {
         let read = |text: &str| text.parse::<Imprint>().expect("an imprint");
         let (nothing, four) = (Template::of(None), Template::of(Some(&read("##\n##"))));
