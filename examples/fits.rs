@@ -45,6 +45,6 @@ pub(crate) fn report() -> String {
         "taxels that differ from the best fit, at most",
         "% of touches",
     );
-    let plot = curve(Plot::from_zero(x, y), "shapes of the set", &trial.known);
+    let plot = curve(Plot::new(x, y), "shapes of the set", &trial.known);
     curve(plot, "other shapes", &trial.foreign).svg()
 }

@@ -14,7 +14,7 @@ use taxel_files::acquire::FrameSource;
 use taxel_files::formats::file::system_reason;
 use taxel_files::formats::recording::may_be_recording;
 use taxel_files::formats::{Content, MAX_DRAWING_BYTES, read_content};
-use taxel_files::storage::{self, Existing, ModelChoice, Models, below_home};
+use taxel_files::storage::{Existing, FileError, ModelChoice, Models, below_home};
 
 use crate::cli::input::outlines::OutlineFlags;
 use crate::tui::app::Document;
@@ -140,25 +140,24 @@ fn refuse_imprint(source: &FrameSource, request: &WatchRequest) -> Result<(), St
     Err(format!("{name}: {what}, not frames; :open opens it"))
 }
 
-/// Writes a file. Returns its path; None if it exists and is to be kept.
+/// Writes a file. Returns its absolute path; None if it exists and is to be kept.
 pub(crate) fn write(
     access: &WriteAccess,
     name: &str,
-    content: &[u8],
     existing: Existing,
+    write: &impl Fn(&Path, Existing) -> Result<(), FileError>,
 ) -> Result<Option<String>, String> {
     let path = access.path(name, existing)?;
-    match storage::write(&path, content, existing) {
-        Ok(()) => Ok(Some(absolute(&path))),
+    match write(&path, existing) {
+        Ok(()) => {
+            let whole = std::path::absolute(&path);
+            Ok(Some(
+                whole.as_deref().unwrap_or(&path).display().to_string(),
+            ))
+        }
         Err(error) if error.exists() && existing == Existing::Kept => Ok(None),
         Err(error) => Err(error.to_string()),
     }
-}
-
-/// Returns the absolute path of a written file; if it cannot be found, the path as it was given.
-pub(crate) fn absolute(path: &Path) -> String {
-    let whole = std::path::absolute(path);
-    whole.as_deref().unwrap_or(path).display().to_string()
 }
 
 /// Returns the paths that begin like this, as they are typed; folders end in a slash. Hidden ones are offered only if

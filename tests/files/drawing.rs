@@ -10,7 +10,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::picture::Picture;
 use taxel_core::sensor::Sensor;
 use taxel_core::touch::Plane;
-use taxel_files::formats::{ConfusionMap, Drawing, Plot, PoseMap};
+use taxel_files::formats::{ConfusionMap, Drawing, Plot};
 
 use crate::common::size;
 
@@ -132,7 +132,7 @@ fn a_confusion_matrix_has_its_numbers_and_shades() {
 
 #[test]
 fn curves_have_axes_and_a_legend() {
-    let plot = Plot::from_zero("scale", "error")
+    let plot = Plot::new("scale", "error")
         .with_curve("threshold 0.5", &[(0.5, 0.7), (1.0, 0.33), (2.0, 0.02)])
         .with_curve(
             "threshold 0.3",
@@ -141,122 +141,19 @@ fn curves_have_axes_and_a_legend() {
     golden("curves", &plot.svg());
     assert_eq!(plot.svg().matches("class=\"curve\"").count(), 2);
     // There is a page even without points.
-    let empty = Plot::from_zero(&"x".repeat(500), "y").with_curve("", &[]);
+    let empty = Plot::new(&"x".repeat(500), "y").with_curve("", &[]);
     assert!(empty.svg().contains("viewBox") && !empty.svg().contains("NaN"));
-}
-
-/// The axes begin at the points; curves have gaps at missing values, and each has its name.
-#[test]
-fn the_axes_of_points_need_not_begin_at_0() {
-    let points = [
-        (40.0, 10.5),
-        (44.0, 11.25),
-        (f64::NAN, 3.0),
-        (42.0, 12.0),
-        (42.0, 12.0),
-    ];
-    let curve = [
-        (40.0, 11.0),
-        (41.0, f64::INFINITY),
-        (42.0, 11.5),
-        (43.0, 11.25),
-    ];
-    let mut plot = Plot::new("na", "f <&>")
-        .with_line("mean", &curve, false)
-        .with_line("largest", &curve, true);
-    plot.title = "5 imprints".to_owned();
-    plot.points = points.to_vec();
-    plot.chosen = Some((42.0, 12.0));
-    let svg = plot.svg();
-    golden("points", &svg);
-    for text in [
-        ">40<",
-        ">44<",
-        ">10.5<",
-        ">12.0<",
-        ">na<",
-        ">f &lt;&amp;&gt;<",
-        ">mean<",
-    ] {
-        assert!(svg.contains(text), "{text}\n{svg}");
-    }
-    assert!(!svg.contains(">0<"), "no axis has to begin at 0");
-    let specks = svg.lines().find(|line| line.contains("class=\"points\""));
-    assert_eq!(
-        specks.map(|line| line.matches('M').count()),
-        Some(3),
-        "two are one"
-    );
-    assert_eq!(
-        svg.matches("stroke-dasharray").count(),
-        2,
-        "a dashed curve and its sample"
-    );
-    // There is a page even without points, or with only one.
-    for points in [&[][..], &[(5.0, 5.0)], &[(1e300, -1e300), (-1e300, 1e300)]] {
-        let mut plot = Plot::new("x", "y");
-        plot.points = points.to_vec();
-        plot.chosen = Some((f64::NAN, 0.0));
-        let svg = plot.svg();
-        assert!(
-            svg.contains("viewBox") && !svg.contains("NaN") && !svg.contains("inf"),
-            "{svg}"
-        );
-        assert!(!svg.contains("chosen"));
-    }
-}
-
-/// There are no lines inside the area of an imprint, and every line separates two areas.
-#[test]
-fn a_map_of_poses_has_areas_with_borders() {
-    let ids = [0, 0, 1, 0, 2, 1].map(Some);
-    let mut map = PoseMap::new((5.0, 5.02), (7.0, 7.01), 3, &ids).expect("two rows");
-    map.title = "angle 30".to_owned();
-    let svg = map.svg();
-    golden("map", &svg);
-    let borders = svg.lines().find(|line| line.contains("class=\"borders\""));
-    // Between the rows below the second cell; to the left and right of that cell; and above it to the right.
-    assert_eq!(
-        borders.map(|line| line.matches('M').count()),
-        Some(3),
-        "{svg}"
-    );
-    for text in [">5.000<", ">5.020<", ">7.010<", ">x0 / cells<"] {
-        assert!(svg.contains(text), "{text}\n{svg}");
-    }
-    let one = PoseMap::new((5.0, 5.0), (5.0, 5.0), 1, &[None]).expect("one cell");
-    assert!(!one.svg().contains("NaN") && !one.svg().contains("imprints\""));
-    for (columns, count) in [(0, 0), (2, 3), (2, 0), (1025, 1025)] {
-        let ids = vec![None; count];
-        assert!(PoseMap::new((0.0, 1.0), (0.0, 1.0), columns, &ids).is_none());
-    }
-    assert!(PoseMap::new((0.0, f64::NAN), (0.0, 1.0), 1, &[None]).is_none());
 }
 
 /// The place of a text and what surrounds it on the page are in points; its width follows from the font.
 #[test]
 fn the_page_holds_all_texts() {
     let long = "long ".repeat(30);
-    let mut far = Plot::new(&long, &long);
-    far.points.push((1e12, 0.0));
-    let mut pages = vec![
-        far.svg(),
-        Plot::from_zero("x", "y")
-            .with_curve(&long, &[(1.0, 0.0)])
-            .svg(),
-    ];
+    let far = Plot::new(&long, &long).with_curve(&long, &[(1e12, 0.0)]);
+    let mut pages = vec![far.svg()];
     let mut fine = Drawing::new(&Imprint::empty(size(1, 64)));
     fine.pitch_mm = Some(0.001);
     pages.push(fine.svg());
-    for (columns, rows) in [(1, 1), (1, 100), (100, 1), (3, 200), (1024, 1)] {
-        let ids = vec![Some(1); columns * rows];
-        for title in ["", "a title"] {
-            let map = PoseMap::new((5.0, 5.99), (5.0, 5.99), columns, &ids);
-            let mut map = map.expect("few cells");
-            map.title = title.to_owned();
-            pages.push(map.svg());
-        }
-    }
     for page in pages {
         let numbers = |text: &str, key: &str| -> Vec<f64> {
             let value = text.split_once(key).expect(key).1;

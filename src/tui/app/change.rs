@@ -5,6 +5,7 @@
 //! belong to the document that they began on. The cursor stays where it was put; [`App::cursor`] keeps it on the
 //! sensor.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use taxel_core::imprint::Imprint;
@@ -13,7 +14,7 @@ use taxel_core::parameter::number::to_decimals;
 use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
 use taxel_files::formats::value::counted;
-use taxel_files::storage::Existing;
+use taxel_files::storage::{Existing, FileError};
 
 use crate::tui::app::{App, Document, DocumentOrigin, History, MoveKind, Notice, Page, Question};
 use crate::tui::compare::{Comparison, heading};
@@ -259,25 +260,21 @@ pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
     set(app, source, MoveKind::Zoom, &zoomed);
 }
 
-/// Writes a file, unless its content cannot be made. If a file of that name exists, asks whether to replace it.
+/// Writes a file. If one of that name exists, asks whether to replace it.
 pub(crate) fn write_file(
     app: &mut App,
     name: String,
-    content: Result<Vec<u8>, String>,
     existing: Existing,
+    write: impl Fn(&Path, Existing) -> Result<(), FileError> + Send + 'static,
 ) {
-    let content = match content {
-        Ok(content) => content,
-        Err(reason) => return refuse(app, reason),
-    };
     let access = Arc::clone(&app.jobs.access);
     app.jobs.disk(format!("Writing {name}"), move |_| {
-        let written = files::write(&access, &name, &content, existing);
+        let written = files::write(&access, &name, existing, &write);
         answer(move |app| match written {
             Ok(Some(path)) => inform(app, format!("written: {path}")),
             Ok(None) => {
                 app.open(Question::replaces(name, |app, name| {
-                    write_file(app, name, Ok(content), Existing::Replaced);
+                    write_file(app, name, Existing::Replaced, write);
                 }));
             }
             Err(reason) => refuse(app, reason),

@@ -10,8 +10,8 @@
 //! are left out: the last line has the whole pose.
 
 use ratatui::layout::{Constraint, Layout, Position, Rect};
-use taxel_core::atlas::{AtlasEntry, AtlasFilter, FilterError, SortDirection, SortKey, sorted};
-use taxel_core::index::{index, wide};
+use taxel_core::atlas::AtlasEntry;
+use taxel_core::index::index;
 use taxel_core::pose::Axis;
 use taxel_files::formats::atlas::pose_share;
 use taxel_files::formats::value::{counted, grouped, percentage};
@@ -31,10 +31,7 @@ const SIGN: usize = 2;
 pub(super) static TAB: Tab = Tab {
     title: "imprints",
     context: Context::Imprints,
-    filtered: true,
     wheel: Wheel::Rows,
-    drawing: None,
-    table: None,
     draw,
     click,
     on,
@@ -190,9 +187,6 @@ fn draw(results: &Results, mut canvas: Canvas<'_>, area: Rect) -> Option<Positio
     }
     let headings = headings.iter().map(|(text, role)| (text.as_str(), *role));
     canvas.line(panes.head, headings);
-    if list.rows.is_empty() {
-        canvas.text(panes.rows.area, &results.no_row(), Role::Quiet);
-    }
     let rows = results.rows_from(panes.rows.first);
     for ((index, entry), row) in rows.zip(panes.rows.area.rows()) {
         let (sign, role) = row_style(index == list.selected);
@@ -236,17 +230,11 @@ fn draw_gallery(results: &Results, first: &AtlasEntry, canvas: &mut Canvas<'_>, 
     }
 }
 
-/// The rows of the list: the imprints that the filter keeps, by number. The selected imprint stays selected when they
-/// are sorted or filtered, if it is kept.
-#[derive(Clone)]
+/// The rows of the list: the numbers of the imprints. The selected imprint stays selected when they are sorted.
 pub(super) struct ImprintList {
-    pub(super) sort: (SortColumn, SortDirection),
+    /// What they are sorted by, and whether the smallest comes first.
+    pub(super) sort: (SortColumn, bool),
     heading: SortColumn,
-    pub(super) filter: String,
-    /// All imprints, sorted: a filter is typed letter by letter, which does not change the order.
-    order: Vec<u32>,
-    /// Empty, before there is a filter, keeps all.
-    kept: Vec<bool>,
     pub(super) rows: Vec<u32>,
     pub(super) selected: usize,
     top: usize,
@@ -254,13 +242,11 @@ pub(super) struct ImprintList {
 
 impl ImprintList {
     pub(super) fn new(findings: &Findings) -> Self {
+        let poses = findings.sweep.atlas.counts().map(number);
         Self {
-            sort: (SortColumn::Poses, SortDirection::Descending),
+            sort: (SortColumn::Poses, false),
             heading: SortColumn::Poses,
-            filter: String::new(),
-            rows: findings.by_poses.clone(),
-            order: findings.by_poses.clone(),
-            kept: Vec::new(),
+            rows: sorted(poses, false),
             selected: 0,
             top: 0,
         }
@@ -268,48 +254,33 @@ impl ImprintList {
 
     /// Sorts by the chosen heading; by the same one again, reverses the order.
     fn sort(&mut self, findings: &Findings, chosen: &Chosen) {
-        let direction = match self.heading {
-            heading if heading == self.sort.0 => self.sort.1.reversed(),
-            SortColumn::FirstPose | SortColumn::Position(_) => SortDirection::Ascending,
-            _ => SortDirection::Descending,
+        let is_ascending = match self.heading {
+            heading if heading == self.sort.0 => !self.sort.1,
+            SortColumn::FirstPose | SortColumn::Position(_) => true,
+            _ => false,
         };
-        self.sort = (self.heading, direction);
+        self.sort = (self.heading, is_ascending);
         self.arrange(findings, chosen);
     }
 
     pub(super) fn arrange(&mut self, Findings { sweep, .. }: &Findings, chosen: &Chosen) {
-        let positions: Vec<Option<f64>>;
-        let key = match self.sort.0 {
-            SortColumn::FirstPose => SortKey::FirstPose,
-            SortColumn::Poses => SortKey::Poses,
-            SortColumn::Pieces => SortKey::Pieces,
-            SortColumn::Holes => SortKey::Holes,
-            SortColumn::Value => SortKey::Value(&chosen.values),
+        let atlas = &sweep.atlas;
+        let summaries = atlas.summaries().iter();
+        let keys: Vec<Option<f64>> = match self.sort.0 {
+            SortColumn::FirstPose => atlas.first_poses().map(number).collect(),
+            SortColumn::Poses => atlas.counts().map(number).collect(),
+            SortColumn::Pieces => summaries.map(|own| Some(own.pieces.into())).collect(),
+            SortColumn::Holes => summaries.map(|own| Some(own.holes.into())).collect(),
+            SortColumn::Value => chosen.values.clone(),
             SortColumn::Position(axis) => {
                 let at = |pose| Some(sweep.grid.pose(pose)[axis]);
-                positions = sweep.atlas.first_poses().map(at).collect();
-                SortKey::Value(&positions)
+                atlas.first_poses().map(at).collect()
             }
         };
-        self.order = sorted(&sweep.atlas, key, self.sort.1);
-        self.apply_filter();
-    }
-
-    /// A filter that cannot be read leaves the list as it is.
-    pub(super) fn keep(&mut self, typed: &str, findings: &Findings) -> Result<(), FilterError> {
-        let filter: AtlasFilter = typed.parse()?;
-        typed.trim().clone_into(&mut self.filter);
-        self.kept = filter.keeps(&findings.sweep.atlas);
-        self.apply_filter();
-        Ok(())
-    }
-
-    fn apply_filter(&mut self) {
         let selected = self.rows.get(self.selected).copied();
-        let is_kept = |id: &u32| self.kept.get(wide(*id)).is_none_or(|&kept| kept);
-        self.rows = self.order.iter().copied().filter(is_kept).collect();
-        if !selected.is_some_and(|id| self.find(id)) {
-            self.select(self.selected);
+        self.rows = sorted(keys.into_iter(), self.sort.1);
+        if let Some(id) = selected {
+            self.find(id);
         }
     }
 
@@ -317,11 +288,9 @@ impl ImprintList {
         self.selected = row.min(self.rows.len().saturating_sub(1));
     }
 
-    /// Selects an imprint; false if the filter hides it.
-    pub(super) fn find(&mut self, id: u32) -> bool {
+    pub(super) fn find(&mut self, id: u32) {
         let row = self.rows.iter().position(|&row| row == id);
         self.selected = row.unwrap_or(self.selected);
-        row.is_some()
     }
 
     /// Returns the first of `visible` rows. It stays while the selected row is visible; otherwise the list scrolls by
@@ -337,13 +306,42 @@ impl ImprintList {
     }
 }
 
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::unnecessary_wraps,
+    reason = "poses are below 2⁵³; a key"
+)]
+fn number(poses: u64) -> Option<f64> {
+    Some(poses as f64)
+}
+
+/// Returns the numbers of all imprints, sorted by a key each. In both directions, equal keys stay in the order of the
+/// numbers, and imprints without a key come last.
+fn sorted(keys: impl Iterator<Item = Option<f64>>, is_ascending: bool) -> Vec<u32> {
+    let mut ids: Vec<(Option<f64>, u32)> = keys.zip(0..).collect();
+    ids.sort_by(|(one, _), (other, _)| match (one, other) {
+        (Some(one), Some(other)) if is_ascending => one.total_cmp(other),
+        (Some(one), Some(other)) => other.total_cmp(one),
+        _ => other.is_some().cmp(&one.is_some()),
+    });
+    ids.into_iter().map(|(_, id)| id).collect()
+}
+
 #[cfg(test)]
 mod tests {
+    use super::sorted;
     use crate::tui::explore::results::tests::results;
 
     #[test]
+    fn equal_keys_keep_their_order_and_missing_ones_come_last() {
+        let keys = [None, Some(2.0), Some(1.0), Some(2.0), None];
+        assert_eq!(sorted(keys.into_iter(), true), [2, 1, 3, 0, 4]);
+        assert_eq!(sorted(keys.into_iter(), false), [1, 3, 2, 0, 4]);
+    }
+
+    #[test]
     fn the_last_screenful_is_full_and_the_list_scrolls_only_when_needed() {
-        let (mut list, findings) = results();
+        let mut list = results();
         let (all, visible) = (list.rows.len(), 10);
         assert!(all > 25 && all % visible != 0, "{all}");
         let mut first = |row| {
@@ -356,7 +354,8 @@ mod tests {
         assert_eq!([first(usize::MAX), first(last)], [last, last]);
         assert_eq!(first(last - 1), (last - 1) / visible * visible);
         first(usize::MAX);
-        list.keep("id<15", &findings).expect("a filter");
+        list.rows.truncate(15);
+        list.select(14);
         assert_eq!(list.first_row(visible), 5, "no line stays empty");
         assert_eq!(list.first_row(20), 0);
     }

@@ -14,24 +14,20 @@ use ratatui::style::Style;
 use taxel_core::index::index;
 use taxel_core::pose::{Axis, PoseIndex};
 use taxel_core::touch::Plane;
-use taxel_files::formats::PoseMap;
 use taxel_files::formats::value::{counted, grouped};
 
 use crate::tui::app::{App, Canvas, Endpoint, Message, Wheel, refuse};
 use crate::tui::explore::ExploreMessage;
-use crate::tui::explore::results::{NOTHING_TO_DRAW, Results, Tab, foot};
+use crate::tui::explore::results::{Results, Tab};
 use crate::tui::grid::draw_thumbnail;
 use crate::tui::keys::{Context, action};
 use crate::tui::widget::write::{self, below, narrow};
-use crate::tui::widget::{Role, Theme, draw_no_room};
+use crate::tui::widget::{Role, Theme};
 
 pub(super) static TAB: Tab = Tab {
     title: "map",
     context: Context::Map,
-    filtered: false,
     wheel: Wheel::Rows,
-    drawing: Some(drawing),
-    table: None,
     draw,
     click: |results, area, at| {
         let (x0, y0) = Pane::of(area, results).pose(at)?;
@@ -45,9 +41,6 @@ const TINTS: u8 = 6;
 const SHADE_COUNT: u8 = 5;
 /// Coverages with different shades: what a picture has instead of colours.
 const SHADES: [f64; SHADE_COUNT as usize] = [0.0, 0.1, 0.3, 0.7, 1.0];
-
-/// The most cells along a side of a drawing: more could not be told apart.
-const DRAWN: u64 = 400;
 
 #[derive(Default)]
 pub(super) struct MapState {
@@ -214,7 +207,7 @@ fn step(results: &mut Results, axis: Axis, by: i64) {
 }
 
 /// Goes to another angle; the first follows the last, as angles may go all around.
-pub(super) fn turn(results: &mut Results, app: &mut App, by: i8) {
+fn turn(results: &mut Results, app: &mut App, by: i8) {
     let count = results.sweep().grid.counts()[Axis::Angle];
     if count == 1 {
         return only_one(results, app, "angle");
@@ -272,31 +265,11 @@ fn draw(results: &Results, mut canvas: Canvas<'_>, area: Rect) -> Option<Positio
     canvas.line(left, [(&*heading, Role::Title), (&*meaning, Role::Quiet)]);
     draw_pose(&mut canvas, results, &pane, area);
     if pane.cells.is_empty() {
-        draw_no_room(canvas.theme, canvas.buffer, area);
+        canvas.text(write::row(area, 1), "no room for the map", Role::Quiet);
         return None;
     }
     draw_rulers(&mut canvas, results, &pane, left);
     Some(draw_cells(&mut canvas, results, &pane, count))
-}
-
-fn drawing(results: &Results) -> Result<String, String> {
-    let grid = &results.sweep().grid;
-    let [width, height, ..] = grid.counts().into_array();
-    let stride = width.max(height).div_ceil(DRAWN).max(1);
-    let all = Visible {
-        first: results.place.with(Axis::X0, 0).with(Axis::Y0, 0),
-        count: (width.div_ceil(stride), height.div_ceil(stride)),
-        stride,
-    };
-    let ends = |axis: Axis, count: u64| {
-        let range = grid.ranges()[axis];
-        (range.value(0), range.value((count - 1) * stride))
-    };
-    let (x0, y0) = (ends(Axis::X0, all.count.0), ends(Axis::Y0, all.count.1));
-    let map = PoseMap::new(x0, y0, index(all.count.0), &all.find(results));
-    let mut map = map.ok_or(NOTHING_TO_DRAW)?;
-    map.title = format!("{}; {}", results.summary(false), heading(results));
-    Ok(map.svg())
 }
 
 /// Says the angle and the zoom: `angle 30° 4/36  zoom x 1.00`.
@@ -416,7 +389,8 @@ fn draw_pose(canvas: &mut Canvas<'_>, results: &Results, pane: &Pane, area: Rect
         (format!("imprint {}", entry.id), poses)
     });
     let text = format!("{which} at {}; {poses}", results.pose_text(number));
-    canvas.text(foot(area), text.trim_end_matches("; "), Role::Text);
+    let foot = write::row(area, area.height.saturating_sub(1).into());
+    canvas.text(foot, text.trim_end_matches("; "), Role::Text);
     if let Some(side) = pane.side {
         canvas.text(side, &which, Role::Title);
         canvas.text(write::row(side, 1), &poses, Role::Text);

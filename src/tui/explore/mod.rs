@@ -1,38 +1,34 @@
 //! Explore: every imprint of a shape.
 //!
 //! ```text
-//! ranges    the form: what to sweep                       work      the sweep or the export in progress
-//! results   a page of six tabs over what was found        export    the prompts: filter of the list, name of a file
-//! imprints  statistics  map  plots                        the tabs: each draws, exports and handles what is its own
+//! ranges    the form: what to sweep                       work      the sweep in progress, the file of its imprints
+//! results   a page of four tabs over what was found
+//! imprints  statistics  map                               the tabs: each draws and handles what is its own
 //! ```
 
-mod export;
 mod imprints;
 mod map;
-mod plots;
 pub(crate) mod ranges;
 pub(crate) mod results;
 mod statistics;
 pub(crate) mod work;
 
-use taxel_core::atlas::{DistinctClasses, SortDirection, SortKey, sorted};
+use taxel_core::atlas::DistinctClasses;
 use taxel_core::pose::PoseGrid;
 use taxel_core::source::Source;
 use taxel_core::sweep::SweepResult;
 
-/// What a sweep found. It never changes, and is shared with workers that write it to files.
+/// What a sweep found. It never changes, and is shared with the worker that writes it to a file.
 #[derive(Debug)]
 pub struct Findings {
     pub(crate) sweep: SweepResult,
     classes: DistinctClasses,
-    by_poses: Vec<u32>,
 }
 
 impl Findings {
     pub(crate) fn new(sweep: SweepResult) -> Self {
         Self {
             classes: sweep.atlas.distinct_classes(),
-            by_poses: sorted(&sweep.atlas, SortKey::Poses, SortDirection::Descending),
             sweep,
         }
     }
@@ -48,8 +44,6 @@ pub enum ExploreTab {
     Statistics,
     Histogram,
     Map,
-    Scatter,
-    Angles,
 }
 
 /// Numbers say how many further on something is; negative goes back.
@@ -62,13 +56,12 @@ pub enum ExploreMessage {
     Tab(ExploreTab),
     NextTab(i8),
     Feature(i8),
-    /// To the heading or the horizontal descriptor to the right.
+    /// To the heading to the right.
     Columns(i8),
     Sort,
-    Filter,
     Find,
     Follow,
-    /// A click on a place of a tab: a heading, x0 and y0 of a map, an angle.
+    /// A click on a place of a tab: a heading, x0 and y0 of a map.
     Point(u64, u64),
     Angle(i8),
     /// To the next zoom of a stored shape.

@@ -1,7 +1,7 @@
-//! The results of a sweep: a page of six tabs.
+//! The results of a sweep: a page of four tabs.
 //!
 //! ```text
-//!  1 imprints   2 statistics   3 histogram   4 map …   the tabs
+//!  1 imprints   2 statistics   3 histogram   4 map     the tabs
 //! hexagon: 1,000 poses, 87 distinct imprints           what was swept, and how much was found
 //!                                                      the open tab
 //! ```
@@ -23,62 +23,37 @@ use crate::tui::app::{
     App, Canvas, Document, Flow, Message, Page, Place, Placed, Reading, Wheel, change,
     compare_with, inform, refuse,
 };
-use crate::tui::explore::export::{ExportDialog, FilterDialog};
 use crate::tui::explore::imprints::{self, ImprintList, SortColumn};
 use crate::tui::explore::map::{self, MapState};
-use crate::tui::explore::plots::{self, AngleCurve, find_angles};
 use crate::tui::explore::statistics::{HISTOGRAM, STATISTICS};
-use crate::tui::explore::work::open_ranges;
+use crate::tui::explore::work::{ExportDialog, open_ranges};
 use crate::tui::explore::{ExploreMessage, ExploreTab, Findings, name_of};
 use crate::tui::keys::{Context, action};
 use crate::tui::widget::write::{self, around, narrow};
 use crate::tui::widget::{Role, Theme, moved};
 
-type Drawing = fn(&Results) -> Result<String, String>;
-
 /// A tab. Its functions get the area below the summary.
 pub(super) struct Tab {
     pub(super) title: &'static str,
     pub(super) context: Context,
-    /// Whether it shows only what the filter keeps.
-    pub(super) filtered: bool,
     pub(super) wheel: Wheel,
-    pub(super) drawing: Option<Drawing>,
-    /// None for the list of imprints, whose file has all imprints, and for tabs with a drawing.
-    pub(super) table: Option<fn(&Results, Rect) -> String>,
     pub(super) draw: fn(&Results, Canvas<'_>, Rect) -> Option<Position>,
     pub(super) click: fn(&Results, Rect, Position) -> Option<Message>,
     pub(super) on: fn(&mut Results, &mut App, &Message, Rect),
 }
 
 /// In the order of [`ExploreTab`].
-pub(super) static TABS: [&Tab; 6] = [
-    &imprints::TAB,
-    &STATISTICS,
-    &HISTOGRAM,
-    &map::TAB,
-    &plots::SCATTER,
-    &plots::ANGLES,
-];
-
-pub(super) const NOTHING_TO_DRAW: &str = "there is nothing to draw";
-
-/// The horizontal descriptor of the scatter plot at first: the outline length.
-const ACROSS: usize = 7;
+static TABS: [&Tab; 4] = [&imprints::TAB, &STATISTICS, &HISTOGRAM, &map::TAB];
 
 pub(crate) struct Results {
     pub(super) findings: Arc<Findings>,
     tab: usize,
     /// The descriptor of all tabs but the map.
     pub(crate) chosen: Chosen,
-    /// The horizontal one of the scatter plot.
-    pub(super) across: Chosen,
     pub(super) list: ImprintList,
     /// The pose at the cursor of the map.
     pub(super) place: PoseIndex,
     pub(super) map: MapState,
-    /// The zooms for which the imprints of each angle were asked for last, and the answer.
-    pub(super) curve: Option<(PoseIndex, Option<AngleCurve>)>,
 }
 
 /// A descriptor, and its value for each imprint.
@@ -134,21 +109,14 @@ pub(super) fn row_style(is_selected: bool) -> (&'static str, Role) {
     }
 }
 
-/// Returns the last line of a tab.
-pub(super) fn foot(area: Rect) -> Rect {
-    write::row(area, usize::from(area.height.saturating_sub(1)))
-}
-
 impl Results {
     pub(crate) fn new(findings: Arc<Findings>) -> Self {
         Self {
             tab: 0,
             chosen: Chosen::new(&findings, 0),
-            across: Chosen::new(&findings, ACROSS),
             list: ImprintList::new(&findings),
             place: PoseIndex::new([0; 5]),
             map: MapState::default(),
-            curve: None,
             findings,
         }
     }
@@ -161,13 +129,9 @@ impl Results {
         TABS[self.tab]
     }
 
-    fn is_open(&self, tab: ExploreTab) -> bool {
-        self.tab == tab as usize
-    }
-
-    /// Whether the present pose is that of the map, not that of the selected imprint.
-    fn is_at_place(&self) -> bool {
-        self.is_open(ExploreTab::Map) || self.is_open(ExploreTab::Angles)
+    /// Its present pose is that at its cursor, not that of the selected imprint.
+    fn is_map(&self) -> bool {
+        self.tab == ExploreTab::Map as usize
     }
 
     fn choose(&mut self, number: usize) {
@@ -177,30 +141,13 @@ impl Results {
         }
     }
 
-    pub(super) fn kept_of_all(&self) -> String {
-        let [kept, all] = [self.list.rows.len(), self.sweep().atlas.len()];
-        format!("{} of {}", grouped(kept as u64), grouped(all as u64))
-    }
-
-    pub(super) fn is_filtered(&self) -> bool {
-        !self.list.filter.is_empty()
-    }
-
-    pub(super) fn no_row(&self) -> String {
-        format!("no imprint fits {}", self.list.filter)
-    }
-
-    pub(super) fn summary(&self, filtered: bool) -> String {
+    fn summary(&self) -> String {
         let sweep = self.sweep();
         let mut poses = counted(sweep.grid.poses(), "pose");
         if !sweep.complete() {
             poses = format!("a part: {} of {poses}", grouped(sweep.poses));
         }
         let what = name_of(sweep.grid.source());
-        if filtered && self.is_filtered() {
-            let (kept, filter) = (self.kept_of_all(), &self.list.filter);
-            return format!("{what}: {poses}, {kept} distinct imprints: {filter}");
-        }
         let distinct = counted(sweep.atlas.len() as u64, "distinct imprint");
         format!("{what}: {poses}, {distinct}")
     }
@@ -216,7 +163,7 @@ impl Results {
     }
 
     fn pose(&self) -> Option<u64> {
-        if self.is_at_place() {
+        if self.is_map() {
             return Some(self.sweep().grid.number(self.place));
         }
         Some(self.selected()?.first_pose)
@@ -239,22 +186,18 @@ impl Results {
         widths.fold(parameter.row().short.len(), usize::max)
     }
 
-    fn select(&mut self, id: u32) -> Result<(), String> {
-        let found = self.list.find(id).then_some(());
-        found.ok_or_else(|| format!("the filter hides imprint {id}: {}", self.list.filter))
-    }
-
     /// Goes from the list to the map, or back.
     fn follow(&mut self) -> Result<(), String> {
         let pose = self.pose().ok_or(NOTHING_SELECTED)?;
         let grid = &self.sweep().grid;
-        if !self.is_at_place() {
+        if !self.is_map() {
             (self.place, self.tab) = (grid.index(pose), ExploreTab::Map as usize);
             return Ok(());
         }
         let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(pose));
         let id = self.sweep().atlas.find(&imprint);
-        self.select(id.ok_or("this pose was not swept: the sweep was stopped")?)?;
+        self.list
+            .find(id.ok_or("this pose was not swept: the sweep was stopped")?);
         self.tab = ExploreTab::Imprints as usize;
         Ok(())
     }
@@ -264,11 +207,12 @@ impl Results {
     fn find(&mut self, app: &mut App) -> Result<(), String> {
         let imprint = app.reading().imprint;
         if let Some(id) = self.sweep().atlas.find(&imprint) {
-            return self.select(id);
+            self.list.find(id);
+            return Ok(());
         }
         let found = self.sweep().atlas.find_shifted(&imprint);
         let found = found.ok_or("the imprint on the matrix is not among these")?;
-        self.select(found.id)?;
+        self.list.find(found.id);
         let ways = [
             (found.right, "column", ["to the left", "to the right"]),
             (found.down, "row", ["up", "down"]),
@@ -321,15 +265,12 @@ impl Results {
             Message::Explore(ExploreMessage::Export) => {
                 return Ok(Flow::push(ExportDialog::new(self)));
             }
-            Message::Explore(ExploreMessage::Filter) => {
-                return Ok(Flow::push(FilterDialog::new(self)));
-            }
             Message::Explore(ExploreMessage::Ranges) => open_ranges(app, Some(&self.sweep().grid)),
             Message::Explore(ExploreMessage::Tab(tab)) => self.tab = tab as usize,
             Message::Explore(ExploreMessage::NextTab(by)) => {
                 self.tab = around(self.tab, by, TABS.len());
             }
-            Message::Explore(ExploreMessage::Feature(_)) if self.is_open(ExploreTab::Map) => {
+            Message::Explore(ExploreMessage::Feature(_)) if self.is_map() => {
                 return Err("the map shows no descriptor".to_owned());
             }
             Message::Explore(ExploreMessage::Feature(by)) => {
@@ -352,14 +293,10 @@ pub(super) fn tab_area(app: &App, results: &Results) -> Rect {
 
 impl Page for Results {
     fn on(&mut self, app: &mut App, message: &Message) -> Flow {
-        let flow = self.handle(app, message).unwrap_or_else(|reason| {
+        self.handle(app, message).unwrap_or_else(|reason| {
             refuse(app, reason);
             Flow::Stay
-        });
-        if self.is_open(ExploreTab::Angles) {
-            find_angles(app, self);
-        }
-        flow
+        })
     }
 
     /// Explore opens them again for the same shape.
@@ -376,8 +313,7 @@ impl Page for Results {
             let is_open = tab == self.tab;
             canvas.text(place, &title, if is_open { Role::Focus } else { Role::Key });
         }
-        let summary = self.summary(self.tab().filtered);
-        canvas.text(write::row(area, 1), &summary, Role::Text);
+        canvas.text(write::row(area, 1), &self.summary(), Role::Text);
         (self.tab().draw)(self, canvas, write::below(area, 2))
     }
 
@@ -394,14 +330,13 @@ impl Page for Results {
 
     fn has_use_for(&self, message: &Message, area: Rect) -> bool {
         let grid = &self.sweep().grid;
-        let is_map = self.is_open(ExploreTab::Map);
         match message {
             Message::Accept | Message::Compare | Message::Explore(ExploreMessage::Follow) => {
                 self.pose().is_some()
             }
             Message::Explore(ExploreMessage::Angle(_)) => grid.counts()[Axis::Angle] > 1,
-            Message::Explore(ExploreMessage::Feature(_)) => !is_map,
-            Message::Zoom(_) => is_map && map::closest(self, write::below(area, 2)) > 0,
+            Message::Explore(ExploreMessage::Feature(_)) => !self.is_map(),
+            Message::Zoom(_) => self.is_map() && map::closest(self, write::below(area, 2)) > 0,
             _ => true,
         }
     }
@@ -444,9 +379,8 @@ pub(super) mod tests {
         Sweep::new(&grid.expect("in range")).run()
     }
 
-    pub(in crate::tui::explore) fn results() -> (ImprintList, Findings) {
+    pub(in crate::tui::explore) fn results() -> ImprintList {
         let ranges = ["5:5.9:0.1", "5:5.5:0.1", "0:80:20"];
-        let findings = Findings::new(sweep(FigureKind::Heptagon, ranges));
-        (ImprintList::new(&findings), findings)
+        ImprintList::new(&Findings::new(sweep(FigureKind::Heptagon, ranges)))
     }
 }

@@ -32,10 +32,7 @@ const NAME: usize = 24;
 pub(super) static STATISTICS: Tab = Tab {
     title: "statistics",
     context: Context::Statistics,
-    filtered: false,
     wheel: Wheel::Rows,
-    drawing: None,
-    table: Some(statistics_table),
     draw: draw_statistics,
     click: |results, area, at| Some(Message::Select(rows(area, results).at(at)?)),
     on: choose_descriptor,
@@ -44,28 +41,11 @@ pub(super) static STATISTICS: Tab = Tab {
 pub(super) static HISTOGRAM: Tab = Tab {
     title: "histogram",
     context: Context::Histogram,
-    filtered: false,
     wheel: Wheel::Step,
-    drawing: None,
-    table: Some(histogram_table),
     draw: draw_histogram,
     click: |_, _, _| None,
     on: choose_descriptor,
 };
-
-fn statistics_table(results: &Results, _area: Rect) -> String {
-    let keys = STATISTIC_COLUMNS.iter().map(|column| column.key);
-    let mut text = format!("descriptor,{}\n", keys.collect::<Vec<_>>().join(","));
-    for statistic in &results.sweep().statistics {
-        text += &statistic.feature.key;
-        for column in STATISTIC_COLUMNS {
-            let value = (column.value)(statistic);
-            text += &value.map_or_else(|| ",".to_owned(), |value| format!(",{value}"));
-        }
-        text.push('\n');
-    }
-    text
-}
 
 fn rows(area: Rect, results: &Results) -> ListRows {
     ListRows::around(below(area, 3), features().len(), results.chosen.number)
@@ -116,20 +96,6 @@ fn histogram(results: &Results, area: Rect) -> Histogram {
     let room = usize::from(area.height.saturating_sub(3)).max(1);
     let (atlas, chosen) = (&results.sweep().atlas, &results.chosen);
     Histogram::of(atlas, chosen.feature(), &chosen.values, room)
-}
-
-fn histogram_table(results: &Results, area: Rect) -> String {
-    let histogram = histogram(results, area);
-    let (key, decimals) = (&results.chosen.feature().key, histogram.decimals());
-    let mut text = "descriptor,from,to,poses\n".to_owned();
-    for (bin, poses) in histogram.poses.iter().enumerate() {
-        let (from, to) = (histogram.from(bin), histogram.from(bin + 1));
-        text += &format!("{key},{from:.decimals$},{to:.decimals$},{poses}\n");
-    }
-    if histogram.without > 0 {
-        text += &format!("{key},,,{}\n", histogram.without);
-    }
-    text
 }
 
 fn draw_histogram(results: &Results, mut canvas: Canvas<'_>, area: Rect) -> Option<Position> {

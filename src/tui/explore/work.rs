@@ -1,33 +1,31 @@
-//! The steps that lead to results: the form of ranges, a sweep or an export in progress, and what comes of it.
+//! The steps that lead to results: the form of ranges, a sweep in progress, and what comes of it; and their file.
 //!
 //! ```text
 //! Open -> form of ranges -> Start -> Running -> results                 Stop: the results so far
-//! results -> name of a file -> Running -> written                       Stop: no file
 //! ```
 
-use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use ratatui::layout::{Position, Rect};
 use taxel_core::picture::Picture;
 use taxel_core::pose::PoseGrid;
+use taxel_core::quote::shortened;
 use taxel_core::source::Source;
 use taxel_core::sweep::{Sweep, SweepResult, TimingSample};
 use taxel_files::formats::value::{counted, grouped};
 use taxel_files::memory::MemoryGuard;
-use taxel_files::storage::{Existing, NewFile, PoseFile, atlas_path, is_poses, write_atlas};
+use taxel_files::storage::{Existing, atlas_path, write_atlas};
 
 use crate::tui::app::{
-    App, Canvas, Flow, Message, Page, Place, Placed, Question, RunState, Wheel, inform, refuse,
+    App, Canvas, Flow, Message, Page, Place, Placed, RunState, Wheel, inform, refuse, write_file,
 };
 use crate::tui::explore::ranges::{RangesForm, about};
 use crate::tui::explore::results::Results;
 use crate::tui::explore::{ExploreMessage, Findings, name_of};
-use crate::tui::files::absolute;
-use crate::tui::jobs::{self, JobProgress, answer};
+use crate::tui::jobs::{self, answer};
 use crate::tui::keys::Context;
-use crate::tui::widget::{Role, write};
+use crate::tui::widget::{Role, TextField, write};
 
 /// What helps a sweep, whose results are in memory.
 const COARSER: &str =
@@ -109,10 +107,19 @@ pub(super) fn measure(app: &mut App, form: &RangesForm) {
 }
 
 pub(super) fn sweep(app: &mut App, grid: PoseGrid) {
-    let title = format!("Exploring: {}", name_of(grid.source()));
-    let end = "stopping keeps what is complete";
     app.jobs.forget(jobs::Slot::Measure);
-    begin(app, title, Some(grid.poses()), end, move |progress| {
+    app.open(Running {
+        title: format!("Exploring: {}", name_of(grid.source())),
+        poses: grid.poses(),
+        progress: None,
+        stopping: false,
+    });
+    app.jobs.run(jobs::Slot::Sweep, move |progress| {
+        progress.counts(|app, poses, elapsed| {
+            if let Some(running) = app.page_mut::<Running>() {
+                running.progress = Some((poses, elapsed));
+            }
+        });
         let memory = MemoryGuard::new(None, COARSER);
         let swept = memory.limit(progress, |progress| {
             Sweep::new(&grid).with_progress(progress).run()
@@ -126,31 +133,7 @@ pub(super) fn sweep(app: &mut App, grid: PoseGrid) {
     });
 }
 
-fn begin(
-    app: &mut App,
-    title: String,
-    poses: Option<u64>,
-    end: &'static str,
-    job: impl FnOnce(&JobProgress) -> jobs::Answer + Send + 'static,
-) {
-    app.open(Running {
-        title,
-        poses,
-        end,
-        progress: None,
-        stopping: false,
-    });
-    app.jobs.run(jobs::Slot::Sweep, move |progress| {
-        progress.counts(|app, poses, elapsed| {
-            if let Some(running) = app.page_mut::<Running>() {
-                running.progress = Some((poses, elapsed));
-            }
-        });
-        job(progress)
-    });
-}
-
-/// Closes the page of work in progress. Returns its index among the pages.
+/// Closes the page of the sweep. Returns its index among the pages.
 fn finish(app: &mut App) -> Option<usize> {
     let place = app.pages.iter().position(|page| page.is::<Running>())?;
     app.pages.remove(place);
@@ -179,88 +162,69 @@ fn take_findings(app: &mut App, place: usize, findings: Arc<Findings>) {
     app.results = None;
 }
 
-/// Writes the findings to a file. If one of that name exists, asks whether to replace it.
-pub(super) fn export(app: &mut App, name: String, existing: Existing) {
-    let Some(results) = app.page::<Results>() else {
-        return;
-    };
-    let (found, is_filtered) = (Arc::clone(&results.findings), results.is_filtered());
-    let path = match app.jobs.access.path(&name, existing) {
-        Ok(path) => path,
-        Err(refused) => return refuse(app, refused),
-    };
-    let title = format!("Writing {name}");
-    let poses = is_poses(&name).then(|| found.sweep.grid.poses());
-    let end = "stopping leaves no file behind";
-    begin(app, title, poses, end, move |progress| {
-        let written = write_file(&found.sweep, &path, existing, progress);
-        let mut text = format!("written: {}", absolute(&path));
-        if is_filtered {
-            let all = counted(found.sweep.atlas.len() as u64, "imprint");
-            text += &format!(", all {all} (the filter does not apply)");
-        }
-        answer(move |app| {
-            let place = finish(app).unwrap_or(usize::MAX);
-            if written == Ok(true) {
-                return inform(app, text);
-            }
-            // Help that covers the page gives way.
-            app.pages.truncate(place);
-            if let Err(reason) = written {
-                return refuse(app, reason);
-            }
-            app.open(Question::replaces(name, |app, name| {
-                export(app, name, Existing::Replaced);
-            }));
-        })
-    });
-}
+/// The prompt for the file of all imprints; its ending gives the format.
+pub(crate) struct ExportDialog(TextField);
 
-/// Returns false if a file of that name exists.
-fn write_file(
-    result: &SweepResult,
-    path: &Path,
-    existing: Existing,
-    progress: &JobProgress,
-) -> Result<bool, String> {
-    let written = if is_poses(path) {
-        let memory = MemoryGuard::new(None, COARSER);
-        memory.limit(progress, |progress| {
-            let mut file = PoseFile::new(path, &result.grid, existing)?;
-            // The imprints of its poses are not kept, so the grid is swept again.
-            let sweep = Sweep::new(&result.grid).with_progress(progress);
-            sweep.run_with_rows(&mut |row, ids| file.take(row, ids));
-            file.finish()?.map(NewFile::persist).transpose()
-        })?
-    } else {
-        let file = write_atlas(&atlas_path(path)?, result, existing);
-        file.and_then(|file| {
-            // Dropped if it comes too late.
-            let file = (!progress.is_stopped()).then(|| file.persist());
-            file.transpose()
-        })
-    };
-    match written {
-        Ok(Some(_)) => Ok(true),
-        Err(error) if error.exists() && existing == Existing::Kept => Ok(false),
-        Err(error) if !progress.is_stopped() => Err(error.to_string()),
-        _ => Err("stopped; nothing was written".to_owned()),
+impl ExportDialog {
+    pub(super) fn new(results: &Results) -> Self {
+        // A slash would separate folders.
+        let what = name_of(results.sweep().grid.source()).replace('/', "-");
+        let mut field = TextField::new(format!("{what}.csv"), 4096);
+        field.enter();
+        Self(field)
     }
 }
 
-/// Work in progress.
+impl Page for ExportDialog {
+    fn on(&mut self, app: &mut App, message: &Message) -> Flow {
+        if *message != Message::Accept {
+            self.0.take(message);
+            return Flow::Stay;
+        }
+        let name = self.0.text().trim().to_owned();
+        match (atlas_path(&name), app.page::<Results>()) {
+            (Ok(_), Some(results)) => {
+                let found = Arc::clone(&results.findings);
+                Flow::ask(|app| {
+                    write_file(app, name, Existing::Kept, move |path, existing| {
+                        let file = write_atlas(path, &found.sweep, existing)?;
+                        file.persist().map(drop)
+                    });
+                })
+            }
+            (Err(expected), _) if name.is_empty() => {
+                refuse(app, expected);
+                Flow::Stay
+            }
+            (Err(expected), _) => {
+                refuse(app, format!("{:?}: {expected}", shortened(&name)));
+                Flow::Stay
+            }
+            _ => Flow::Close,
+        }
+    }
+
+    fn placed(&self) -> Placed {
+        (Context::Export, Place::Prompt, Wheel::Idle)
+    }
+
+    fn draw(&self, canvas: Canvas<'_>, area: Rect) -> Option<Position> {
+        let (label, endings) = ("Export all imprints to: ", "   (.csv .jsonl .npz)");
+        Some(canvas.prompt(area, label, &self.0, endings))
+    }
+}
+
+/// A sweep in progress.
 pub(crate) struct Running {
     title: String,
-    /// All that there are, if the work counts them.
-    poses: Option<u64>,
-    /// What stopping leaves.
-    end: &'static str,
+    /// All that there are.
+    poses: u64,
     /// The poses so far, and the time that they took.
     progress: Option<(u64, Duration)>,
     stopping: bool,
 }
 
-/// Closes the page of work that has failed without an answer of its own.
+/// Closes the page of a sweep that has failed without an answer of its own.
 pub(crate) fn close_if_failed(app: &mut App) {
     if !app.jobs.is_running(jobs::Slot::Sweep) && app.page::<Running>().is_some() {
         finish(app);
@@ -282,7 +246,7 @@ impl Running {
             return None;
         }
         let mut text = format!("{} poses a second", grouped(rate as u64));
-        let left = self.poses?.saturating_sub(poses) as f64 / rate;
+        let left = self.poses.saturating_sub(poses) as f64 / rate;
         if let Ok(left) = Duration::try_from_secs_f64(left) {
             text += &format!(", {} left", about(left));
         }
@@ -316,16 +280,17 @@ impl Page for Running {
         let inner = write::right_of(area, area.x.saturating_add(2));
         let row = |index: usize| write::row(inner, 2 * index);
         canvas.text(row(0), &self.title, Role::Title);
-        if let Some(all) = self.poses {
-            let done = self.progress.map_or(0, |(poses, _)| poses);
-            let percent = u128::from(done) * 100 / u128::from(all.max(1));
-            let text = format!("{} of {}, {percent} %", grouped(done), counted(all, "pose"));
-            canvas.text(row(1), &text, Role::Text);
-            gauge(&mut canvas, done, all, row(2));
-        }
+        let (done, all) = (self.progress.map_or(0, |(poses, _)| poses), self.poses);
+        let percent = u128::from(done) * 100 / u128::from(all.max(1));
+        let text = format!("{} of {}, {percent} %", grouped(done), counted(all, "pose"));
+        canvas.text(row(1), &text, Role::Text);
+        gauge(&mut canvas, done, all, row(2));
         canvas.text(row(3), &self.speed().unwrap_or_default(), Role::Text);
-        let stopping = "stopping; Ctrl-C quits at once";
-        let end = if self.stopping { stopping } else { self.end };
+        let end = if self.stopping {
+            "stopping; Ctrl-C quits at once"
+        } else {
+            "stopping keeps what is complete"
+        };
         canvas.text(row(4), end, Role::Quiet);
         None
     }

@@ -48,10 +48,8 @@ pub fn answer(act: impl FnOnce(&mut App) + Send + 'static) -> Answer {
 /// A job begun in a slot takes the place of the one before, whose answers are dropped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Slot {
-    /// A sweep, or the export of one.
     Sweep,
     Measure,
-    Angles,
     Model,
     Names,
 }

@@ -10,7 +10,7 @@ use taxel_core::quote::shortened;
 use taxel_core::source::Source;
 use taxel_files::formats::file::has_ending;
 use taxel_files::formats::{Drawing, ExportFormat, Name, value};
-use taxel_files::storage::{Existing, UNNAMED};
+use taxel_files::storage::{self, Existing, UNNAMED};
 
 use crate::tui::app::change::{
     begin, change, compare_with, hold, inform, movable, put_back, refuse, replace, settle, shift,
@@ -386,8 +386,12 @@ fn write(app: &mut App, name: String) {
     if app.reading().imprint.is_empty() {
         return refuse(app, "nothing to write: the matrix is empty");
     }
-    let content = content(app, &name);
-    write_file(app, name, content, Existing::Kept);
+    match content(app, &name) {
+        Ok(content) => write_file(app, name, Existing::Kept, move |path, existing| {
+            storage::write(path, &content, existing)
+        }),
+        Err(reason) => refuse(app, reason),
+    }
 }
 
 fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {

@@ -3,7 +3,7 @@
 //! ```text
 //! text_field   a line of text that is edited         theme       styles and characters
 //! field_list   the fields of a form, one with focus  write       text into the buffer
-//! rows         the selected row of a list            plot        two axes around a field of dots
+//! rows         the selected row of a list            dots        lines of dots finer than characters
 //! ```
 
 pub mod text_field;
@@ -14,12 +14,13 @@ pub mod rows;
 
 pub mod theme;
 
-pub mod plot;
+pub mod dots;
 
 pub mod write;
 
+pub use dots::*;
 pub(in crate::tui) use field_list::*;
-pub use plot::*;
+
 pub use rows::*;
 pub use text_field::TextField;
 pub use theme::*;

@@ -6,7 +6,6 @@
 use std::borrow::Cow;
 
 use ratatui::style::{Color, Modifier, Style};
-use taxel_core::atlas::SortDirection;
 use taxel_files::formats::value::fitting;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -237,12 +236,9 @@ impl Theme {
         self.pick(['^', 'v', '<', '>'], ['↑', '↓', '←', '→'])
     }
 
-    pub fn sorted(&self, direction: SortDirection) -> char {
+    pub fn sorted(&self, is_ascending: bool) -> char {
         let [up, down, ..] = self.more();
-        match direction {
-            SortDirection::Ascending => up,
-            SortDirection::Descending => down,
-        }
+        if is_ascending { up } else { down }
     }
 
     pub fn none(&self) -> &'static str {

@@ -62,11 +62,9 @@ pub(crate) fn explore_svgs() -> Vec<(String, String)> {
     const SCRIPT: &str = "
 Keys fr<Enter>:explore --angle 0:350:10<Enter>
 Expect /360,000 poses/
-Keys /
-Type \"na>=19 holes=0\"
-Keys <Enter>s<Down>
+Keys s<Down>
 Screen explore-imprints
-Keys /<C-u><Enter>2<4x:Down>
+Keys 2<4x:Down>
 Screen explore-statistics
 Keys 3
 Screen explore-histogram
@@ -75,10 +73,6 @@ Keys <30x:Right>
 Screen explore
 Keys ++++
 Screen explore-letters
-Keys 5<Home>
-Screen explore-scatter
-Keys 6<7x:Down>
-Screen explore-angles
 ";
     let title = |name: &str| {
         let page = name.strip_prefix("explore-").unwrap_or("map");

@@ -12,7 +12,7 @@ use taxel::tui::jobs::Jobs;
 use taxel::tui::script::Session;
 
 use crate::property::config;
-use crate::session::{hides, press, session, shows, sized, started, then, world};
+use crate::session::{hides, press, session, shows, started, then, world};
 
 /// A sweep of several hundred seconds on any machine.
 const LONG: &str = ":explore --x0 0:9.999:0.001 --y0 0:9.999:0.001<Enter>";
@@ -119,13 +119,7 @@ fn a_stopped_sweep_keeps_its_complete_part() {
         &program.session,
         &["a part: ", " of 36,000,000,000 poses", "stopped after "],
     );
-    // A format that cannot be written is not offered.
-    program.then(
-        "x",
-        &["Export all imprints to: rectangle.csv   (.csv .jsonl .npz)"],
-    );
-    program.then("poses.npy<Enter>", &[".npy needs all poses: only "]);
-    program.then("<Esc>4<lt><End><PageDown>", &["not swept"]);
+    program.then("4<lt><End><PageDown>", &["not swept"]);
     program.then("g", &["this pose was not swept"]);
 }
 
@@ -255,15 +249,8 @@ fn keys_of_explore_that_can_do_nothing_say_so() {
     );
 }
 
-#[test]
-fn a_curve_of_a_sample_says_so_and_keeps_its_legend() {
-    let keys = "f<Enter>:explore --x0 5 --y0 5:5.99:0.01 --angle 0:359:1<Enter>6";
-    let sampled = "NA (na) against the angle; sampled: 1 in 5 y0  line: mean, dashes: min, max";
-    shows(&sized((80, 24), false, keys), &[sampled]);
-}
-
 fn any_keys() -> impl Strategy<Value = Vec<&'static str>> {
-    let keys = "e|e<Enter>|<Enter>|<Esc>|1|2|3|4|5|6|+|-|/na>18 holes=0<Enter>|/zz<Enter>|/<C-u><Enter>|s|<Tab>|\
+    let keys = "e|e<Enter>|<Enter>|<Esc>|1|2|3|4|+|-|s|<Tab>|\
         <S-Tab>|d|D|n|f|j|g|<Up>|<Down>|<Left>|<Right>|<Home>|<End>|<PageUp>|<PageDown>|<lt>|>|z|?|s|q|\
         y|x<C-u>|a.txt|<BS>|<C-u>|5:6:0.5|0:350:10|-3|fr<Enter>|fe<Tab>3<Enter>|<Space>|u|U|S8<Enter>|\
         <Space><Right><Space>|:explore --x0 -9:9:0.7 --y0 -9:15:1.1 --anchor centre<Enter>|\

@@ -111,7 +111,8 @@ impl Atlas {
         self.summaries = order.iter().map(|&old| self.summaries[old]).collect();
     }
 
-    pub(crate) fn summaries(&self) -> &[ImprintSummary] {
+    /// The summaries of the imprints, in their order.
+    pub fn summaries(&self) -> &[ImprintSummary] {
         &self.summaries
     }
 

@@ -25,11 +25,6 @@ pub struct Feature {
 }
 
 impl Feature {
-    /// Returns the symbol of its descriptor on the screen; None if the descriptor has other parts, too.
-    pub(in crate::atlas) fn symbol(&self) -> Option<&'static str> {
-        (self.key == self.descriptor.key).then_some(self.descriptor.symbol)
-    }
-
     /// Returns the value of the feature; None if it does not exist. Only the feature's own descriptor is computed.
     pub fn value(&self, description: &Description) -> Option<f64> {
         let (mut index, mut found) = (0, None);

@@ -185,7 +185,7 @@ fn directions(statistic: &mut Statistic, sum: &Sum, between: Wide) {
 
 /// Returns the circular mean of directions in degrees, given the mean of their unit vectors. None if the vectors
 /// cancel, up to the rounding of their parts.
-pub fn mean_direction(x: f64, y: f64) -> Option<f64> {
+fn mean_direction(x: f64, y: f64) -> Option<f64> {
     (libm::hypot(x, y) >= 1e-11).then(|| libm::atan2(y, x).to_degrees() + 0.0)
 }
 

@@ -28,10 +28,9 @@ pub mod shape;
 pub(crate) mod table;
 pub mod value;
 
-pub use drawing::{axis_ends, axis_marks};
 pub use json::DescribedImprint;
 
-pub use drawing::{ConfusionMap, Drawing, Plot, PoseMap};
+pub use drawing::{ConfusionMap, Drawing, Plot};
 pub use imprint_file::{Content, ExportFormat, read as read_imprint, read_content};
 pub use name::Name;
 

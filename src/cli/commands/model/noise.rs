@@ -230,7 +230,7 @@ impl Table for NoisyRates {
 
     fn svg(&self) -> Option<String> {
         let curves = self.curves().into_iter();
-        let plot = curves.fold(Plot::from_zero("noise", "right"), |plot, (dead, points)| {
+        let plot = curves.fold(Plot::new("noise", "right"), |plot, (dead, points)| {
             plot.with_curve(&counted(dead, "dead taxel"), &points)
         });
         Some(plot.svg())

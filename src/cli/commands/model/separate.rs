@@ -410,7 +410,7 @@ impl Table for Separated {
     fn svg(&self) -> Option<String> {
         let (name, curves) = self.plotted();
         let name = name.replace("_mm", " / mm");
-        let mut plot = Plot::from_zero(&name, "error");
+        let mut plot = Plot::new(&name, "error");
         for (title, points) in &curves {
             plot = plot.with_curve(title, points);
         }
