@@ -46,15 +46,11 @@ fn evaluation(model: &Model) {
     let confusion = Work::new(|| {
         black_box(Evaluation::of(black_box(model)));
     });
-    let pairs = Work::new(|| {
-        black_box(black_box(model).pair_errors());
-    });
-    let [confusion, pairs] = in_turn(100, [confusion, pairs]).map(|least| least.processor * 1e3);
+    let [confusion] = in_turn(100, [confusion]).map(|least| least.processor * 1e3);
     println!(
         "confusion of {} keys: {confusion:.2} ms",
         model.keys().len()
     );
-    println!("errors of all pairs: {pairs:.2} ms");
 }
 
 /// Measures a touch that some shapes leave, a touch that no shape leaves, and finding the pose of a shape.

@@ -120,8 +120,6 @@ fn models_are_trained_shown_and_evaluated_in_every_form() {
         "confusion r --ascii --given na,p --export m.svg",
         "confusion r --greedy --round cg_cd=0.01",
         "confusion r --greedy --json",
-        "confusion r --pairs",
-        "confusion r --pairs --json",
         "confusion r --classifier knn --sample 7 --seed 3",
         "confusion r --classifier z --json",
         "confusion r --classifier all --export all.csv",
@@ -558,7 +556,7 @@ fn what_cannot_be_done_is_refused_with_the_reason() {
         "confusion r --classifier z --neighbours 3",
         "confusion r --given na --round cg_cd=0.01",
         "confusion r --force",
-        "confusion r --dead 4 --matrix 16x16 --touches 50 --pairs",
+        "confusion r --dead 4 --matrix 16x16 --touches 50 --greedy",
         "confusion r --given na,cg",
         "confusion r --test 5 --noise 0:0.1:0.1",
         "confusion r --test 5 --foreign rectangles.jsonl",
@@ -571,7 +569,6 @@ fn what_cannot_be_done_is_refused_with_the_reason() {
         "confusion r --noise 0.01 --matrix 3x3",
         "confusion r --noise 0 --dead 257",
         // A table of 20,000 shapes would take more than 12 GB.
-        "confusion many.npz --pairs",
         "confusion many.npz --json",
         "confusion 65.npz --classifier knn --export there.svg",
     ];

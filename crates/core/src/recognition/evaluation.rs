@@ -193,29 +193,6 @@ fn prior_bits(model: &Model) -> f64 {
 }
 
 impl Model {
-    /// Returns, for each pair of shapes, the error of the best classifier that has to tell just these two apart:
-    /// `errors[i][j]`, from 0 to ½ for equal weights; 0 on the diagonal. Needs 24 bytes of memory for each element.
-    pub fn pair_errors(&self) -> Vec<Vec<f64>> {
-        let shapes = self.shapes().len();
-        let mut wrong = vec![vec![0_u128; shapes]; shapes];
-        for key in 0..self.keys().len() {
-            let counts = self.counts(key);
-            for (index, &one) in counts.iter().enumerate() {
-                for &other in &counts[index + 1..] {
-                    let least = self.weighted(one).min(self.weighted(other));
-                    wrong[usize::from(one.shape)][usize::from(other.shape)] += least;
-                }
-            }
-        }
-        let weight = |shape: usize| u128::from(self.shapes()[shape].weight);
-        let error = |one: usize, other: usize| {
-            let touches = u128::from(self.poses()) * (weight(one) + weight(other));
-            share(wrong[one.min(other)][one.max(other)], touches)
-        };
-        let row = |one: usize| (0..shapes).map(|other| error(one, other)).collect();
-        (0..shapes).map(row).collect()
-    }
-
     /// Returns the shapes whose touches are never certain, because each of their keys is also left by another shape of
     /// the set.
     pub fn never_certain(&self) -> Vec<usize> {

@@ -76,8 +76,7 @@ Examples:
 #[command(
     after_help = EXAMPLES,
     group = ArgGroup::new("descriptors").args(["given", "greedy"]),
-    group = ArgGroup::new("of").args(["greedy", "pairs", "classifier", "noise"]),
-    group = ArgGroup::new("not_given").args(["greedy", "pairs"]).conflicts_with("given"),
+    group = ArgGroup::new("of").args(["greedy", "classifier", "noise"]),
     group = ArgGroup::new("with_classifier").arg("classifier"),
 )]
 pub(crate) struct Confusion {
@@ -102,9 +101,6 @@ pub(crate) struct Confusion {
     /// Choose descriptors one by one until none helps
     #[arg(long, conflicts_with_all = ["csv", "export"])]
     greedy: bool,
-    /// Print the error for each pair of shapes, by itself
-    #[arg(long, conflicts_with_all = ["csv", "export"])]
-    pairs: bool,
     /// Another way to name shapes: z, knn, template, or all of them in a table
     #[arg(long, value_name = "NAME", value_parser = classifiers(), hide_possible_values = true)]
     classifier: Option<String>,
@@ -135,10 +131,9 @@ pub(crate) struct Confusion {
 const MOST_DRAWN: usize = 64;
 
 /// What does not go together with `--test`.
-const OTHERS: [&str; 8] = [
+const OTHERS: [&str; 7] = [
     "given",
     "greedy",
-    "pairs",
     "classifier",
     "round",
     "dead",
@@ -170,8 +165,6 @@ impl Confusion {
             self.table.give(&rates, cx)
         } else if self.greedy {
             cx.print(&self.chosen(&model))
-        } else if self.pairs {
-            cx.print(&self.paired(&model))
         } else if let Some(name) = &self.classifier {
             if let Ok(classifier) = name.parse() {
                 let reached = self.reached(classifier, &model)?;
@@ -227,9 +220,7 @@ impl Confusion {
         let shapes = found.shapes().len();
         let of_all = self.classifier.as_deref() == Some(ALL);
         let is_curve = self.noise.noise.is_some() && self.test.is_none();
-        if self.pairs {
-            fits_in_table("--pairs", shapes)?;
-        } else if !of_all && !self.greedy && !is_curve {
+        if !of_all && !self.greedy && !is_curve {
             fits_in_table("confusion matrix", shapes)?;
         }
         self.noise.check(&found.sensor())?;
@@ -356,27 +347,6 @@ impl Confusion {
         rows.push(cells("limit: the whole imprint", &limit));
         table(&rows, &[0])
     }
-
-    /// The matrix is symmetric: each entry is the error of the best classifier if there were only these two shapes.
-    fn paired(&self, model: &Model) -> String {
-        let errors = model.pair_errors();
-        let labels = names(model.shapes());
-        if self.table.json {
-            return json::ascii(&json!({"labels": labels, "errors": errors})) + "\n";
-        }
-        let rows = square(&labels, labels.len(), |row, column| {
-            if row == column {
-                "–".to_owned()
-            } else {
-                percentage(errors[row][column], 2)
-            }
-        });
-        table(&rows, &[0]) + "errors in percent, for each pair alone\n"
-    }
-}
-
-fn names(shapes: &[NamedShape]) -> Vec<String> {
-    shapes.iter().map(|shape| shape.name.clone()).collect()
 }
 
 /// The rows of a table with a row for each label and a column for each of the first ones; both are numbered.
