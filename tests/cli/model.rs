@@ -116,14 +116,12 @@ fn models_are_trained_shown_and_evaluated_in_every_form() {
         "show r --json",
         "confusion r",
         "confusion r --json",
-        "confusion r --csv --quiet --export m.csv",
+        "confusion r --csv",
         "confusion r --ascii --given na,p --export m.svg",
         "confusion r --greedy --round cg_cd=0.01",
         "confusion r --greedy --json",
         "confusion r --classifier knn --sample 7 --seed 3",
         "confusion r --classifier z --json",
-        "confusion r --classifier all --export all.csv",
-        "confusion r --classifier all --json",
         "confusion r --test 20 --foreign parts.jsonl washer",
         "confusion r --test 20 --seed 5 --noise 0 --csv",
         "confusion r --test 20 --tolerance 0 --json --foreign washer",
@@ -137,8 +135,6 @@ fn models_are_trained_shown_and_evaluated_in_every_form() {
     let text = place.transcript("", &[train]) + &place.transcript("model", &lines);
     insta::assert_snapshot!("model", text);
     let file = |name| String::from_utf8(place.read(name)).expect("text");
-    assert!(text.contains(&file("m.csv")));
-    assert!(file("all.csv").starts_with("classifier,error,right_in_top_two,information_bits\nz,"));
     assert!(
         file("m.svg").contains(">57.2 %</text>"),
         "{}",
@@ -157,9 +153,6 @@ fn each_flag_of_an_evaluation_counts() {
     };
     assert!(right("--given cg_cd --round cg_cd=0.1") < right("--given cg_cd"));
     assert!(right("--classifier z --given na") < right("--classifier z"));
-    let all = place.json("model confusion r --classifier all --json");
-    let knn = place.json("model confusion r --classifier knn --json");
-    assert_eq!(knn["error"], all["knn"]);
     // With noise, one taxel more is another count.
     let right = |asked: &str| {
         let noisy = "model confusion r --noise 0:0.04:0.04 --touches 50 --json --quiet";
@@ -521,7 +514,7 @@ fn identical_shapes_have_no_number_of_touches_until_certainty() {
 #[test]
 fn what_cannot_be_done_is_refused_with_the_reason() {
     let place = Place::with_model();
-    place.write("there.csv", "kept");
+    place.write("there.svg", "kept");
     place.write(
         "t.jsonl",
         "{\"name\":\"t\",\"figure\":\"triangle\",\"side\":11.77}\n",
@@ -560,18 +553,17 @@ fn what_cannot_be_done_is_refused_with_the_reason() {
         "confusion r --given na,cg",
         "confusion r --test 5 --noise 0:0.1:0.1",
         "confusion r --test 5 --foreign rectangles.jsonl",
-        "confusion r --test 5 --export there.svg",
+        "confusion r --test 5 --export m.svg",
         "confusion r --greedy --round cg_cd=0",
         "confusion r --export m.txt",
-        "confusion r --export there.csv",
-        "confusion r --classifier all --export all.svg",
+        "confusion r --export there.svg",
         "confusion r --noise 0 --touches 5 --matrix 6x6",
         "confusion r --noise 0.01 --matrix 3x3",
         "confusion r --noise 0 --dead 257",
         // A table of 20,000 shapes would take more than 12 GB.
         "confusion many.npz --json",
-        "confusion 65.npz --classifier knn --export there.svg",
+        "confusion 65.npz --classifier knn --export m.svg",
     ];
     insta::assert_snapshot!("refused", place.transcript("model", &lines));
-    assert_eq!(place.read("there.csv"), b"kept");
+    assert_eq!(place.read("there.svg"), b"kept");
 }

@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::model::Place;
 
 #[test]
-fn sizes_and_thresholds_are_answered_in_every_form() {
+fn sizes_are_answered_in_every_form() {
     let place = Place::new();
     let sizes = "rectangles.jsonl --positions 5 --angle 0:350:10 --quiet";
     let lines = [
@@ -15,8 +15,7 @@ fn sizes_and_thresholds_are_answered_in_every_form() {
         format!("{sizes} --scale 1 --want 0.9"),
         format!("{sizes} --pitch 0.4:1:0.2 --want 0.1 --export m.svg"),
         format!("{sizes} --pitch 0.4:1:0.2 --want 0 --json"),
-        format!("{sizes} --threshold 0.3:0.7:0.2 --ascii"),
-        format!("{sizes} --scale 1:1.5:0.5 --threshold 0.4:0.6:0.2 --want 0.2"),
+        format!("{sizes} --scale 1:1.5:0.5 --threshold 0.4 --want 0.2 --ascii"),
     ];
     let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
     insta::assert_snapshot!("separate", place.transcript("model separate", &lines));
@@ -67,7 +66,7 @@ fn sizes_that_fit_on_no_sensor_are_omitted() {
     }
     let lines = [
         "rectangles.jsonl --scale 19:20:1",
-        "rectangles.jsonl --threshold 0.5:1.5:0.5",
+        "rectangles.jsonl --scale 1 --threshold 1.5",
         "rectangles.jsonl --pitch 0:1:0.5",
         "figures washer --scale 1",
         "rectangles.jsonl",

@@ -70,24 +70,11 @@ pub(crate) fn parse_number(text: &str) -> Result<f64, String> {
     number::read(text).ok_or_else(|| number::complaint(text))
 }
 
-pub(crate) fn report() -> impl TypedValueParser<Value = PathBuf> {
-    let expected = "expected a name that ends in .csv or .svg";
-    file_of(&["csv", "svg"], expected)
-}
-
-pub(crate) fn npy() -> impl TypedValueParser<Value = PathBuf> {
-    file_of(&["npy"], "expected a name that ends in .npy")
-}
-
-/// Parses the name of a file with one of these extensions, in upper or lower case. It need not be UTF-8.
-fn file_of(
-    endings: &'static [&'static str],
-    expected: &'static str,
-) -> impl TypedValueParser<Value = PathBuf> {
+/// Parses the name of a file with this extension, in upper or lower case. It need not be UTF-8.
+pub(crate) fn file_of(ending: &'static str) -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(move |name| {
-        let path = PathBuf::from(name);
-        let known = endings.iter().any(|ending| has_ending(&path, ending));
-        known.then_some(path).ok_or(expected)
+        let path = Some(PathBuf::from(name)).filter(|path| has_ending(path, ending));
+        path.ok_or_else(|| format!("expected a name that ends in .{ending}"))
     })
 }
 

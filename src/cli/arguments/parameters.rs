@@ -35,6 +35,9 @@ fn group(number: usize) -> (&'static str, Vec<Parameter>, fn(Parameter) -> Strin
         3 => ("Sensor", SENSOR_PARAMETERS.to_vec(), usual),
         4 => ("Sensor", SENSOR_PARAMETERS.to_vec(), of_shape),
         5 => ("Sensor", SENSOR_PARAMETERS.to_vec(), fitting),
+        6 => ("Sensor", vec![Parameter::Threshold], |_| {
+            "; default that of the model, or 0.5".to_owned()
+        }),
         _ => ("Sensor", vec![Parameter::Pitch], usual),
     }
 }
@@ -55,7 +58,10 @@ pub(crate) type OwnSensorFlags = Flags<4>;
 /// A sensor that is large enough for all shapes unless its sides are given.
 pub(crate) type FittingSensorFlags = Flags<5>;
 
-pub(crate) type PitchFlag = Flags<6>;
+/// The threshold of a model's sensor.
+pub(crate) type ThresholdFlag = Flags<6>;
+
+pub(crate) type PitchFlag = Flags<7>;
 
 /// The values that a group of flags gives.
 #[derive(Clone, Debug, Default)]

@@ -41,7 +41,6 @@ use crate::cli::commands::recognise::{FoundNamer, Namer, NamingFlags};
 use crate::cli::input::recording::{RecordingFile, damaged, noted, refused};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::count;
-use crate::cli::output::plot::heat_map;
 use crate::cli::output::report;
 use crate::cli::output::table::Record;
 use crate::cli::{Context, Failure};
@@ -778,7 +777,7 @@ impl Answering<'_> {
         let mut text = if again { "\n" } else { "" }.to_owned();
         if let Some(values) = heat {
             let charset = Charset::current();
-            text += &(heat_map(values, &charset.line(&unit(info)), charset) + "\n");
+            text += &(report::heat_map(values, &charset.line(&unit(info)), charset) + "\n");
         }
         text += &report::table(&imprint, &lines, pitch);
         let named = self.namer.as_ref().map(|namer| namer.text(&imprint));

@@ -26,7 +26,7 @@ use taxel_files::storage::{Existing, NewFile, PoseFile, atlas_path, check_writab
 
 use crate::cli::Context;
 use crate::cli::arguments::flags::{
-    TOO_LITTLE_MEMORY, name_or_path, npy, one_of, parse_shard, whole,
+    TOO_LITTLE_MEMORY, file_of, name_or_path, one_of, parse_shard, whole,
 };
 use crate::cli::arguments::parameters::{Given, RangeFlags, SensorFlags, SizeFlags};
 use crate::cli::commands::export::{replacing, written};
@@ -83,7 +83,7 @@ pub(crate) struct Sweep {
     #[arg(long, value_name = "FILE", value_parser = atlas())]
     atlas: Option<PathBuf>,
     /// Write which imprint each pose leaves
-    #[arg(long, value_name = "FILE.npy", value_parser = npy(), conflicts_with = "shard")]
+    #[arg(long, value_name = "FILE.npy", value_parser = file_of("npy"), conflicts_with = "shard")]
     poses: Option<PathBuf>,
     /// Replace an existing file
     #[arg(long, requires = "files")]

@@ -36,7 +36,7 @@ use taxel_files::formats::recording::{
 use taxel_files::formats::value::counted;
 use taxel_files::{ReadError, ReadErrorKind};
 
-use crate::cli::arguments::flags::{name_or_path, npy};
+use crate::cli::arguments::flags::{file_of, name_or_path};
 use crate::cli::arguments::parameters::Given;
 use crate::cli::commands::export::replacing;
 use crate::cli::commands::frame_flags::WatchFlags;
@@ -58,7 +58,7 @@ pub(crate) struct Watch {
     #[arg(help = "Serial line, FIFO, tcp://HOST:PORT, recording or file; '-' for\nstandard input")]
     source: OsString,
     /// Record all frames, for numpy and 'taxel frames'
-    #[arg(long, value_name = "FILE.npy", value_parser = npy())]
+    #[arg(long, value_name = "FILE.npy", value_parser = file_of("npy"))]
     write: Option<PathBuf>,
     /// Replace an existing file
     #[arg(long, requires = "write")]

@@ -3,7 +3,6 @@
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::value::RawValue;
-use taxel_core::geometry::{Ellipse, Pen, Point, Side, Solid};
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::Parameter;
 use taxel_core::parameter::number::differing;
@@ -12,10 +11,8 @@ use taxel_files::formats::value::{self, decimal, deviation, percent};
 
 use crate::cli::commands::recognise::Namer;
 use crate::cli::output::charset::Charset;
-use crate::cli::output::plot::draw_over;
 use crate::cli::output::table::bar;
 use crate::naming::verdict;
-use crate::tui::widget::DotCanvas;
 
 /// The most shapes in words, and the least probability of those after the first, unless their number is given.
 const SHOWN: usize = 8;
@@ -159,60 +156,41 @@ impl Recognition<'_> {
         &self.namer.model.shapes()[shape].name
     }
 
-    /// Draws the touch and what the fitted shape leaves, or the nearest imprint if nothing was fitted, in one matrix;
-    /// with a pose, also the outline of the fitted shape. Empty if there is nothing to see beside the touch.
+    /// Draws the touch and what the fitted shape leaves, or the nearest imprint if nothing was fitted, in one matrix.
+    /// Empty if there is nothing to see beside the touch.
     fn drawn(&self, touch: &Imprint) -> String {
         let (answer, charset) = (&self.answer, Charset::current());
         let mut text = String::new();
-        let (other, what, outlined) = match (&answer.fit, &answer.nearest) {
-            (Some(fit), _) => {
-                let outlined = self.namer.asks_pose.then_some(&fit.source);
-                (&fit.imprint, "fitted shape", outlined)
-            }
+        let (other, what) = match (&answer.fit, &answer.nearest) {
+            (Some(fit), _) => (&fit.imprint, "fitted shape"),
             (None, Some(nearest)) if nearest.distance > 0 => {
                 let (name, distance) = (self.name(nearest.shape), differing(nearest.distance));
                 text = charset.lines(&format!("nearest: {name}, {distance}\n"));
-                (&nearest.imprint, "nearest imprint", None)
+                (&nearest.imprint, "nearest imprint")
             }
             _ => return text,
         };
         let is_dead = |column, row| self.dead.is_some_and(|dead| dead.get(column, row));
         let (full, empty) = charset.taxels();
-        // In ASCII, outlines have strokes like a minus.
-        let is_stroke = outlined.is_some() && charset == Charset::Ascii;
-        let missing = if is_stroke { "o " } else { "- " };
         let taxel = |column, row| match (touch.get(column, row), other.get(column, row)) {
             _ if is_dead(column, row) => "x ",
             (true, true) => full,
             (true, false) => "+ ",
-            (false, true) => missing,
+            (false, true) => "- ",
             (false, false) => empty,
         };
-        let row = |row| (0..touch.columns()).flat_map(move |column| taxel(column, row).chars());
-        let taxels: Vec<Vec<char>> = (0..touch.rows()).map(|own| row(own).collect()).collect();
-        let is_mark = |sign: &char| ['x', '+', '-', 'o'].contains(sign);
-        let is_marked = taxels.iter().flatten().any(is_mark);
-        if outlined.is_none() && !is_marked {
-            return text;
-        }
-        let mut rows = taxels.clone();
-        if let Some(source) = outlined {
-            let (columns, lines) = (u16::from(touch.columns()), u16::from(touch.rows()));
-            let mut outline = Outline(DotCanvas::new(2 * columns, lines));
-            source.draw(&mut outline);
-            draw_over(&mut rows, &outline.0, charset);
-        }
-        for (mut row, taxels) in rows.into_iter().zip(taxels) {
-            let marks = row
-                .iter_mut()
-                .zip(&taxels)
-                .filter(|(_, taxel)| is_mark(taxel));
-            marks.for_each(|(sign, &mark)| *sign = mark);
-            text += &format!("  {}\n", row.iter().collect::<String>().trim_end());
+        let mut is_marked = false;
+        let mut drawn = String::new();
+        for row in 0..touch.rows() {
+            let signs = (0..touch.columns()).map(|column| taxel(column, row));
+            let signs = signs.collect::<String>();
+            is_marked |= signs.contains(['x', '+', '-']);
+            drawn += &format!("  {}\n", signs.trim_end());
         }
         if is_marked {
             let both = &full[..full.len() / 2];
-            text += &format!("  {both} both   + only in the touch   {missing}only in the {what}");
+            text += &drawn;
+            text += &format!("  {both} both   + only in the touch   - only in the {what}");
             text += if self.dead.is_some() {
                 "   x dead\n"
             } else {
@@ -307,30 +285,4 @@ fn angle_in_words(angle: &AngleEstimate, poses: u64) -> String {
     let (mean, spread) = (decimal(mean, 1), deviation(spread, 1));
     let arc = value::pose_arc(angle, poses);
     format!("angle {mean}° ± {spread}°{repeats}; {arc}")
-}
-
-/// Draws an outline. A taxel is two characters wide, so it has four dots in both directions.
-struct Outline(DotCanvas);
-
-impl Pen<f64> for Outline {
-    fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
-        let place = |point: Point<f64>| (4.0 * point.x, 4.0 * point.y);
-        self.0.line(place(from), place(to));
-    }
-
-    fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {
-        const PIECES: u16 = 128;
-        let own = *ellipse;
-        let at = |piece: u16| {
-            let turn = std::f64::consts::TAU * f64::from(piece) / f64::from(PIECES);
-            let (sin, cos) = libm::sincos(turn);
-            Point {
-                x: own.centre.x + own.across.x * cos + own.along.x * sin,
-                y: own.centre.y + own.across.y * cos + own.along.y * sin,
-            }
-        };
-        for piece in 0..PIECES {
-            self.edge(at(piece), at(piece + 1));
-        }
-    }
 }

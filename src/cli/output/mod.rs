@@ -8,8 +8,6 @@ pub(super) mod progress;
 
 pub(super) mod evaluation;
 
-pub(super) mod plot;
-
 pub(super) mod table;
 
 pub(super) mod answer;

@@ -21,11 +21,13 @@ use taxel_core::description::{
     DESCRIPTORS, Description, Descriptor, Dimension, RegionKind, regions,
 };
 use taxel_core::imprint::Imprint;
+use taxel_core::matrix::Matrix;
 use taxel_core::parameter::number::short;
 use taxel_core::sensor::{MatrixSize, Sensor};
 use taxel_core::source::Source;
 use taxel_core::touch::reaches_beyond;
-use taxel_files::formats::{DescribedImprint, json, value};
+use taxel_files::formats::value::{self, characters, fitting};
+use taxel_files::formats::{DescribedImprint, json};
 
 use crate::cli::output::charset::Charset;
 use crate::cli::output::table;
@@ -90,6 +92,26 @@ pub(crate) fn ruled<T: Display>(size: MatrixSize, cell: impl Fn(u8, u8) -> T) ->
         text += format!("\n{row:>2}  {cells}").trim_end();
     }
     text + "\n"
+}
+
+/// Draws the values of all cells, with numbers of columns and rows as beside imprints, and a legend of the shades. A
+/// cell of 0 or less is a dot; a cell without a value is blank.
+pub(crate) fn heat_map(values: &Matrix<f64>, unit: &str, charset: Charset) -> String {
+    let largest = values.values().iter().copied().fold(0.0, f64::max);
+    let ascii = charset == Charset::Ascii;
+    let zero = value::character(0.0, ascii);
+    let map = ruled(values.size(), |column, row| {
+        let shade = match values.row(row)[usize::from(column)] {
+            // If no value is above 0, there is no share.
+            value if value <= 0.0 => zero,
+            value => value::character(value / largest, ascii),
+        };
+        [shade, if shade == zero { ' ' } else { shade }]
+            .iter()
+            .collect::<String>()
+    });
+    let scale: String = characters(ascii)[1..].iter().collect();
+    map + &format!("0 {scale} {}{unit}\n", fitting(largest, 9))
 }
 
 /// A row of the table: its label, its descriptor, and the factor applied to the values (the pitch, or 100 for percent).
@@ -169,5 +191,20 @@ mod tests {
         for index in 1..=8 {
             assert_eq!(text.matches(&format!("exterior {index}")).count(), 1);
         }
+    }
+
+    #[test]
+    fn shades_divide_the_range_evenly() {
+        let size = MatrixSize::new(6, 1).expect("an allowed size");
+        let values = vec![0.0, f64::NAN, 1.0, 25.0, 26.0, 100.0];
+        let values = Matrix::from_values(size, values).expect("as many");
+        assert_eq!(
+            heat_map(&values, " kPa", Charset::Unicode),
+            "    0   2   4\n 0  ·   ░░░░▒▒██\n0 ░▒▓█ 100 kPa\n"
+        );
+        assert_eq!(
+            heat_map(&values, "", Charset::Ascii),
+            "    0   2   4\n 0  .   ::--==@@\n0 :-=+*#%@ 100\n"
+        );
     }
 }

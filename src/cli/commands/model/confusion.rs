@@ -3,12 +3,10 @@
 //! The best classifier is counted from all touches of the model, so its error is the limit of every method that sees
 //! one touch.
 
-use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::iter;
 
 use clap::ArgGroup;
-use clap::builder::PossibleValuesParser;
 use serde_json::{Value, json};
 use taxel_core::imprint::Imprint;
 use taxel_core::index::wide;
@@ -23,7 +21,7 @@ use taxel_files::formats::{ConfusionMap, json};
 use taxel_files::storage::FoundModel;
 
 use crate::cli::Context;
-use crate::cli::arguments::flags::{name_or_path, whole};
+use crate::cli::arguments::flags::{name_or_path, one_of, whole};
 use crate::cli::commands::model::noise::NoiseFlags;
 use crate::cli::commands::model::trial::TrialReport;
 use crate::cli::commands::model::{
@@ -33,7 +31,7 @@ use crate::cli::failure::{Failure, Named};
 use crate::cli::input::outlines::OutlineFlags;
 use crate::cli::input::shapes;
 use crate::cli::output::evaluation::{self, NamedBy, cell, count, matrix_csv, summary};
-use crate::cli::output::table::{Record, row, table};
+use crate::cli::output::table::{row, table};
 use crate::cli::settings::Pitch;
 use crate::naming::Terms;
 
@@ -67,7 +65,7 @@ Examples:
   taxel model confusion parts --test 200 --foreign washer key
   taxel model confusion parts --given na,p --json
   taxel model confusion parts --greedy --round cg_cd=0.01
-  taxel model confusion parts --classifier all
+  taxel model confusion parts --classifier knn
   taxel model confusion parts --noise 0:0.1:0.01 --dead 0,4 --touches 200
   taxel model confusion parts --export parts.svg";
 
@@ -101,9 +99,10 @@ pub(crate) struct Confusion {
     /// Choose descriptors one by one until none helps
     #[arg(long, conflicts_with_all = ["csv", "export"])]
     greedy: bool,
-    /// Another way to name shapes: z, knn, template, or all of them in a table
-    #[arg(long, value_name = "NAME", value_parser = classifiers(), hide_possible_values = true)]
-    classifier: Option<String>,
+    /// Another way to name shapes: z, knn or template
+    #[arg(long, value_name = "NAME", value_parser = one_of::<Classifier, _>(Classifier::ALL.iter().map(|own| own.name())))]
+    #[arg(hide_possible_values = true)]
+    classifier: Option<Classifier>,
     // A doc comment would want quotation marks around the key.
     #[arg(long, value_name = "KEY=STEP", requires = "descriptors")]
     #[arg(help = "Round a descriptor to steps, such as cg_cd=0.01")]
@@ -131,7 +130,7 @@ pub(crate) struct Confusion {
 const MOST_DRAWN: usize = 64;
 
 /// What does not go together with `--test`.
-const OTHERS: [&str; 7] = [
+const OTHERS: [&str; 8] = [
     "given",
     "greedy",
     "classifier",
@@ -139,17 +138,11 @@ const OTHERS: [&str; 7] = [
     "dead",
     "touches",
     "matrix",
+    "export",
 ];
 
 /// The most random touches of a shape: the answers to all of them are kept until they are counted.
 const MOST_TESTED: u64 = 10_000_000;
-
-const ALL: &str = "all";
-
-fn classifiers() -> PossibleValuesParser {
-    let names = Classifier::ALL.iter().map(|own| own.name());
-    PossibleValuesParser::new(names.chain([ALL]))
-}
 
 impl Confusion {
     pub(super) fn run(self, cx: &Context) -> Result<(), Failure> {
@@ -165,16 +158,10 @@ impl Confusion {
             self.table.give(&rates, cx)
         } else if self.greedy {
             cx.print(&self.chosen(&model))
-        } else if let Some(name) = &self.classifier {
-            if let Ok(classifier) = name.parse() {
-                let reached = self.reached(classifier, &model)?;
-                let (own, named) = (&reached.evaluation, NamedBy::Classifier);
-                return self.table.give(&Matrix(own, named, Some(&reached)), cx);
-            }
-            let limit = Evaluation::of(&model);
-            let reached = Classifier::ALL.iter().map(|own| self.reached(*own, &model));
-            let reached = reached.collect::<Result<_, _>>()?;
-            self.table.give(&Classifiers { reached, limit }, cx)
+        } else if let Some(classifier) = self.classifier {
+            let reached = self.reached(classifier, &model)?;
+            let (own, named) = (&reached.evaluation, NamedBy::Classifier);
+            self.table.give(&Matrix(own, named, Some(&reached)), cx)
         } else {
             let (limit, named) = match self.known() {
                 Some(given) => (given.evaluate(&model), NamedBy::Descriptors),
@@ -186,21 +173,35 @@ impl Confusion {
 
     /// Refuses flags that would be ignored.
     fn check(&self) -> Result<(), Failure> {
-        let name = self.classifier.as_deref().unwrap_or_default();
-        let is = |one: &str| name == one || name == ALL;
-        let (no_knn, no_template) = (!is("knn"), !is("template"));
+        let is = |one| self.classifier == Some(one);
+        let (no_knn, is_template) = (!is(Classifier::Knn), is(Classifier::Template));
         let none_drawn = self.test.is_none() && self.noise.noise.is_none() && no_knn;
-        let with = format!("with --classifier {name}");
         let without = "without --test, --noise or --classifier knn, which draw touches";
         let given = self.given.as_ref();
         let known =
             |own: &Rounding| given.is_none_or(|all| all.descriptors.contains(&own.descriptor));
         let unknown = !self.round.iter().all(known);
         let unused = [
-            ("neighbours", self.neighbours.is_some() && no_knn, &*with),
-            ("sample", self.sample.is_some() && no_knn, &with),
-            ("templates", self.templates.is_some() && no_template, &with),
-            ("given", given.is_some() && name == "template", &with),
+            (
+                "neighbours",
+                self.neighbours.is_some() && no_knn,
+                "without --classifier knn",
+            ),
+            (
+                "sample",
+                self.sample.is_some() && no_knn,
+                "without --classifier knn",
+            ),
+            (
+                "templates",
+                self.templates.is_some() && !is_template,
+                "without --classifier template",
+            ),
+            (
+                "given",
+                given.is_some() && is_template,
+                "with --classifier template",
+            ),
             ("seed", self.seed.is_some() && none_drawn, without),
             ("round", unknown, "for what --given does not name"),
         ];
@@ -218,24 +219,16 @@ impl Confusion {
     /// work, not after it.
     fn check_model(&self, found: &FoundModel) -> Result<(), Failure> {
         let shapes = found.shapes().len();
-        let of_all = self.classifier.as_deref() == Some(ALL);
         let is_curve = self.noise.noise.is_some() && self.test.is_none();
-        if !of_all && !self.greedy && !is_curve {
+        if !self.greedy && !is_curve {
             fits_in_table("confusion matrix", shapes)?;
         }
         self.noise.check(&found.sensor())?;
-        let not_drawn = if of_all {
-            Some("expected a name that ends in .csv, for the table of all classifiers".to_owned())
-        } else if self.test.is_some() {
-            Some("expected a name that ends in .csv, for answers to random touches".to_owned())
-        } else {
-            let most = "shapes, and a drawing shows at most 64; .csv takes all";
-            (!is_curve && shapes > MOST_DRAWN).then(|| format!("{shapes} {most}"))
-        };
-        match (self.table.drawing(), not_drawn) {
-            (Some(path), Some(reason)) => Err(Failure::new(reason)).named(path.display()),
-            _ => self.table.check(),
+        if self.table.export.is_some() && !is_curve && shapes > MOST_DRAWN {
+            let text = format!("{shapes} shapes, and a drawing shows at most {MOST_DRAWN}");
+            return Err(Failure::new(text)).named("--export");
         }
+        self.table.check()
     }
 
     /// The shapes of `--foreign`. One that the model has would be counted as wrong.
@@ -397,7 +390,7 @@ impl Table for Matrix<'_> {
         if !pairs.is_empty() {
             text += &format!("most confused: {}\n", pairs.join(", "));
         }
-        text + &classifier.map_or(String::new(), features) + &sampled(classifier)
+        text + &classifier.map_or(String::new(), based_on)
     }
 
     fn csv(&self) -> String {
@@ -420,70 +413,19 @@ impl Table for Matrix<'_> {
     }
 }
 
-/// The features that a classifier used, and those that it left out because they have only one value or copy another
-/// one. Templates have none: they compare imprints.
-fn features(reached: &ClassifierEvaluation) -> String {
-    if reached.classifier == Classifier::Template {
-        return String::new();
+/// The features that a classifier used, those that it left out because they have only one value or copy another one,
+/// and what it drew. Templates have no features: they compare imprints.
+fn based_on(reached: &ClassifierEvaluation) -> String {
+    let mut text = String::new();
+    if reached.classifier != Classifier::Template {
+        text += &format!("features: {}\n", reached.features.join(", "));
     }
-    let mut text = format!("features: {}\n", reached.features.join(", "));
     for (name, reason) in &reached.dropped {
         text += &format!("left out: {name}, {reason}\n");
     }
+    if let Some((poses, seed)) = reached.sample {
+        let (name, poses) = (reached.classifier.name(), grouped(poses as u64));
+        text += &format!("{name} draws {poses} poses of each shape, with seed {seed}\n");
+    }
     text
-}
-
-fn sampled<'a>(reached: impl IntoIterator<Item = &'a ClassifierEvaluation>) -> String {
-    let drawn = reached.into_iter().filter_map(|own| {
-        let (name, (poses, seed)) = (own.classifier.name(), own.sample?);
-        let poses = grouped(poses as u64);
-        Some(format!(
-            "{name} draws {poses} poses of each shape, with seed {seed}\n"
-        ))
-    });
-    drawn.collect()
-}
-
-/// All classifiers, and the limit of one touch in the last row.
-struct Classifiers {
-    reached: Vec<ClassifierEvaluation>,
-    limit: Evaluation,
-}
-
-impl Classifiers {
-    fn rows(&self) -> impl Iterator<Item = (&'static str, &Evaluation, f64)> {
-        let reached = self.reached.iter();
-        let reached = reached.map(|own| (own.classifier.name(), &own.evaluation));
-        let rows = reached.chain([("limit", &self.limit)]);
-        rows.map(|(name, own)| (name, own, share(own.right_in_top_two, own.touches)))
-    }
-}
-
-impl Table for Classifiers {
-    fn text(&self) -> String {
-        let mut rows = vec![row(["classifier", "error", "top two", "information"])];
-        for (name, own, top_two) in self.rows() {
-            let bits = format!("{:.3} bits", own.information_bits);
-            rows.push(row([name, &percent(own.error()), &percent(top_two), &bits]));
-        }
-        let features = self.reached.first().map_or(String::new(), features);
-        table(&rows, &[0]) + &features + &sampled(&self.reached)
-    }
-
-    fn records(&self) -> Vec<Record<'static>> {
-        let record = |(name, own, top_two): (&str, &Evaluation, f64)| {
-            Record(vec![
-                ("classifier", json!(name)),
-                ("error", json!(own.error())),
-                ("right_in_top_two", json!(top_two)),
-                ("information_bits", json!(own.information_bits)),
-            ])
-        };
-        self.rows().map(record).collect()
-    }
-
-    fn json(&self) -> String {
-        let errors = self.rows().map(|(name, own, _)| (name, own.error()));
-        json::text(&errors.collect::<BTreeMap<_, _>>()) + "\n"
-    }
 }

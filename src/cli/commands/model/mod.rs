@@ -23,7 +23,7 @@ use taxel_files::storage::{
     self, FoundModel, ModelCache, ModelChoice, ModelFolder, Models, check_writable,
 };
 
-use crate::cli::arguments::flags::{name_or_path, report};
+use crate::cli::arguments::flags::{file_of, name_or_path};
 use crate::cli::commands::export::{replacing, written};
 use crate::cli::failure::{Failure, Named};
 use crate::cli::input::outlines::OutlineFlags;
@@ -116,8 +116,8 @@ pub(crate) struct SetFlags {
 #[expect(clippy::struct_excessive_bools, reason = "flags")]
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct TableFlags {
-    /// Write the table (.csv) or a drawing of it (.svg)
-    #[arg(long, value_name = "FILE", value_parser = report(), group = "with_export")]
+    /// Write a drawing
+    #[arg(long, value_name = "FILE.svg", value_parser = file_of("svg"), group = "with_export")]
     export: Option<PathBuf>,
     /// Replace an existing file
     #[arg(long, requires = "with_export")]
@@ -172,17 +172,9 @@ impl TableFlags {
         Ok(())
     }
 
-    /// The file that gets a drawing.
-    fn drawing(&self) -> Option<&PathBuf> {
-        let path = self.export.as_ref();
-        path.filter(|path| has_ending(path, "svg"))
-    }
-
     fn give(&self, table: &impl Table, cx: &Context) -> Result<(), Failure> {
-        if let Some(path) = &self.export {
-            let drawing = self.drawing().and_then(|_| table.svg());
-            let content = drawing.unwrap_or_else(|| table.csv());
-            storage::write(path, content.as_bytes(), replacing(self.force))?;
+        if let Some((path, drawing)) = self.export.as_ref().zip(table.svg()) {
+            storage::write(path, drawing.as_bytes(), replacing(self.force))?;
             if !self.quiet {
                 cx.note(&written(path));
             }

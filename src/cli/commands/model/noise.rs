@@ -24,9 +24,7 @@ use crate::cli::arguments::parameters::parse_range;
 use crate::cli::commands::model::confusion::Confusion;
 use crate::cli::commands::model::{Table, find, ready, watched};
 use crate::cli::failure::{Failure, Named};
-use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{WEIGHTED, count};
-use crate::cli::output::plot;
 use crate::cli::output::table::{Record, bar, row, table};
 
 /// The most noisy touches of a shape.
@@ -190,16 +188,7 @@ impl Table for NoisyRates {
         }
         let touches = self.rows.first().map_or(0, |(_, _, rate)| rate.touches);
         let (touches, seed) = (counted(touches, "touch"), self.seed);
-        let mut text = table(&rows, &[5]);
-        text += &format!("{touches} a row, seed {seed}\n{}", self.note);
-        for (dead, points) in self.curves() {
-            let dead = counted(dead, "dead taxel");
-            match plot::lines("right", "noise", &points, Charset::current()) {
-                none if none.is_empty() => {}
-                curve => text += &format!("\n{dead}\n{curve}"),
-            }
-        }
-        text
+        table(&rows, &[5]) + &format!("{touches} a row, seed {seed}\n{}", self.note)
     }
 
     fn records(&self) -> Vec<Record<'static>> {

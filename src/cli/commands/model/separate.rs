@@ -1,8 +1,6 @@
-//! `taxel model separate`: how the error of a set depends on the size of its shapes and on the threshold of the
-//! sensor.
+//! `taxel model separate`: how the error of a set depends on the size of its shapes in cells.
 //!
-//! For each threshold, sizes are tried from the smallest on. Each is a training of its own, on the smallest sensor that
-//! holds all shapes. With `--want ERROR`, the first size that reaches the error is then refined: sizes between it and
+//! Sizes are tried from the smallest on. Each is a training of its own, on the smallest sensor that holds all shapes. With `--want ERROR`, the first size that reaches the error is then refined: sizes between it and
 //! the last one that does not are tried. Errors are reported before the first training where possible.
 
 use std::ffi::{OsStr, OsString};
@@ -24,15 +22,13 @@ use taxel_files::storage::ModelChoice;
 
 use crate::cli::Context;
 use crate::cli::arguments::flags::{parse_probability, whole};
-use crate::cli::arguments::parameters::parse_range;
+use crate::cli::arguments::parameters::{ThresholdFlag, parse_range};
 use crate::cli::commands::model::{
     SetFlags, Table, TableFlags, find, models, positions, ready, trained,
 };
 use crate::cli::failure::{Failure, Named};
 use crate::cli::input::shapes;
-use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::count;
-use crate::cli::output::plot;
 use crate::cli::output::table::{Record, row, table};
 use crate::cli::settings::Pitch;
 
@@ -40,7 +36,7 @@ use crate::cli::settings::Pitch;
 const REFINED: u64 = 9;
 
 const EXAMPLES: &str = "\
-Trains the set once for each scale, pitch and threshold, and prints the error:
+Trains the set once for each scale or pitch, and prints the error:
 the share of touches that even the best classifier names wrong. A scale
 multiplies all lengths. With --pitch, lengths are in mm, whatever their unit,
 and a taxel of a stored shape is 1 mm; its own pitch and threshold are ignored. Sizes at which
@@ -61,35 +57,33 @@ Examples:
   taxel model separate parts/*.svg --pitch 1:5:0.5 --want 0.02 --positions 10
   taxel model separate parts --scale 0.5:2:0.1 --positions 20
   taxel model separate parts.jsonl --pitch 1:4:0.5 --want 0.05 --positions 10
-  taxel model separate parts --threshold 0.3:0.7:0.1 --positions 10 --json
+  taxel model separate parts --scale 1 --threshold 0.3 --positions 10 --json
   taxel model separate parts --scale 1:2:0.2 --positions 10 --export sizes.svg";
 
 /// Find how fine a sensor must be to tell the shapes apart
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = EXAMPLES,
-    override_usage = "taxel model separate [OPTIONS] <--scale|--pitch|--threshold> [MODEL]...",
-    group = ArgGroup::new("axes").args(AXES).multiple(true).required(true),
+    override_usage = "taxel model separate [OPTIONS] <--scale|--pitch> [MODEL]...",
+    group = ArgGroup::new("axes").args(AXES).required(true),
     mut_arg("set", |set| set.value_name("MODEL|FILE|NAME").help(SET)),
 )]
 pub(crate) struct Separate {
     #[command(flatten)]
     set: SetFlags,
-    /// Multiply all lengths by this; one of --scale, --pitch and --threshold is required
+    /// Multiply all lengths by this; --scale or --pitch is required
     #[arg(id = AXES[0], long = "scale", value_name = "RANGE", value_parser = parse_range)]
     scale: Option<DecimalRange>,
     /// Pitch in mm; lengths are in mm, too
     #[arg(id = AXES[1], long = "pitch", value_name = "RANGE", value_parser = parse_range)]
-    #[arg(conflicts_with = AXES[0])]
     pitch: Option<DecimalRange>,
-    /// Threshold; default the model's, or 0.5
-    #[arg(id = AXES[2], long = "threshold", value_name = "RANGE", value_parser = parse_range)]
-    threshold: Option<DecimalRange>,
+    #[command(flatten)]
+    threshold: ThresholdFlag,
     /// Rotation about the centre, in degrees; default that of the model, or 0:359:1
     #[arg(id = "range_angle", long = "angle", value_name = "START:END:STEP")]
     #[arg(value_parser = parse_range, allow_hyphen_values = true, help_heading = "Grid")]
     angle: Option<DecimalRange>,
-    /// Positions per cell along x and y; default those of the model, or 100
+    /// Positions per cell along x and y: 1, 2, 4, 5, 10, 20, 25, 50 or 100; default those of the model, or 100
     #[arg(long, value_name = "N", value_parser = positions, help_heading = "Grid")]
     positions: Option<CellPositions>,
     /// Find the smallest scale, or the coarsest pitch, with at most this error (0 to 1)
@@ -105,14 +99,12 @@ pub(crate) struct Separate {
 const SET: &str = "A model, or shapes as for 'taxel model train'";
 
 /// The ids of the flags of sizes. Those of a sensor's own flags, which take a number, are other ones.
-const AXES: [&str; 3] = ["range_scale", "range_pitch", "range_threshold"];
+const AXES: [&str; 2] = ["range_scale", "range_pitch"];
 
 impl Separate {
     pub(super) fn run(self, cx: &Context) -> Result<(), Failure> {
         self.check()?;
-        let (separation, usual) = self.separation(cx)?;
-        let thresholds = self.threshold.as_ref();
-        let thresholds = thresholds.map_or(vec![usual], |range| range.values().collect());
+        let (separation, threshold) = self.separation(cx)?;
         let scale = self.scale.unwrap_or(DecimalRange::whole(1));
         let (axis, range) = match self.pitch {
             Some(pitch) => (SizeAxis::Pitch, pitch),
@@ -120,17 +112,13 @@ impl Separate {
         };
         let (mut sizes, mut left_out) = (Vec::new(), Vec::new());
         for size in axis.smallest_first(&range) {
-            let mut list = &mut sizes;
-            for threshold in &thresholds {
-                match separation.training(axis.scale(size), *threshold) {
-                    Err(TrainingError::Large) => list = &mut left_out,
-                    tried => {
-                        let place = format!("{} {size}, threshold {threshold}", axis.name());
-                        tried.map(drop).named(place)?;
-                    }
+            match separation.training(axis.scale(size), threshold) {
+                Err(TrainingError::Large) => left_out.push(size),
+                tried => {
+                    tried.map(drop).named(format!("{} {size}", axis.name()))?;
+                    sizes.push(size);
                 }
             }
-            list.push(size);
         }
         self.table.check()?;
         if let (Some(first), Some(last)) = (left_out.first(), left_out.last()) {
@@ -146,26 +134,24 @@ impl Separate {
             cx.note(&format!("left out: {text}"));
         }
         let more = self.want.map_or(0, |_| REFINED);
-        let points = (sizes.len() as u64 + more) * thresholds.len() as u64;
+        let points = sizes.len() as u64 + more;
         let memory = MemoryGuard::new(None, "take fewer shapes, smaller sizes or coarser steps");
         let by = (self.jobs, memory, self.table.quiet);
-        let curves = trained(separation.touches() * points, by, |progress| {
-            let curve = |&threshold: &f64| {
-                let at = |&size: &f64| separation.at(axis, size, threshold, progress);
-                let points = sizes.iter().map(at).collect::<Result<Vec<_>, _>>()?;
-                let smallest = match self.want {
-                    Some(error) => separation.smallest(axis, &points, error, progress)?,
-                    None => None,
-                };
-                Ok((threshold, points, smallest))
+        let separated = trained(separation.touches() * points, by, |progress| {
+            let at = |&size: &f64| separation.at(axis, size, threshold, progress);
+            let points = sizes.iter().map(at).collect::<Result<Vec<_>, _>>()?;
+            let smallest = match self.want {
+                Some(error) => separation.smallest(axis, &points, error, progress)?,
+                None => None,
             };
-            thresholds.iter().map(curve).collect()
+            Ok(Separated {
+                axis,
+                threshold,
+                points,
+                wanted: self.want,
+                smallest,
+            })
         })?;
-        let separated = Separated {
-            axis,
-            curves,
-            wanted: self.want,
-        };
         if self.table.csv {
             // The table has no place for the result of --want. It is an answer, not a note, so --quiet does not
             // suppress it.
@@ -178,7 +164,6 @@ impl Separate {
         for (range, flag, most, allowed) in [
             (self.scale, "scale", f64::MAX, "above 0"),
             (self.pitch, "pitch", 1000.0, "above 0, up to 1000"),
-            (self.threshold, "threshold", 1.0, "above 0, up to 1"),
         ] {
             let ends = range.map(|range| [range.value(0), range.last()]);
             let wrong = |value: &f64| *value <= 0.0 || *value > most;
@@ -191,10 +176,10 @@ impl Separate {
         Ok(())
     }
 
-    /// The set, and the threshold if none is given.
+    /// The set, and the threshold.
     fn separation(&self, cx: &Context) -> Result<(Separation, f64), Failure> {
         let what = &self.set.what;
-        let (mut separation, threshold) = match &what[..] {
+        let (mut separation, sensor) = match &what[..] {
             [model] if !self.set.library_all && is_model(model, cx) => {
                 self.set.outlines.refuse()?;
                 let model = ready(find(model, &cx.shelf)?, self.table.quiet)?;
@@ -202,7 +187,7 @@ impl Separate {
                 separation.steps.angles = model.ranges()[Axis::Angle];
                 separation.steps.positions =
                     CellPositions::of(model.ranges()).unwrap_or(CellPositions::FINE);
-                (separation, model.sensor().threshold())
+                (separation, *model.sensor())
             }
             _ => {
                 let no_shape = |name: &str| cx.shelf.source(name).is_err();
@@ -216,13 +201,13 @@ impl Separate {
                 let (given, usual) = (self.pitch.map(|_| 1.0), cx.settings.sensor.pitch);
                 let pitch = Pitch { given, usual };
                 let shapes = shapes::read_set(&self.set, pitch, &cx.shelf)?;
-                (Separation::new(shapes)?, Sensor::default().threshold())
+                (Separation::new(shapes)?, Sensor::default())
             }
         };
         let steps = &mut separation.steps;
         steps.angles = self.angle.unwrap_or(steps.angles);
         steps.positions = self.positions.unwrap_or(steps.positions);
-        Ok((separation, threshold))
+        Ok((separation, self.threshold.sensor(sensor)?.threshold()))
     }
 }
 
@@ -236,16 +221,13 @@ fn is_model(what: &OsStr, cx: &Context) -> bool {
     }
 }
 
-/// A threshold, the limit of one touch at each size, and the smallest size that reaches the wanted error, if any does.
-type Curve = (f64, Vec<SeparationPoint>, Option<SmallestSize>);
-
-/// A title and the points below it.
-type Line = (String, Vec<(f64, f64)>);
-
+/// The limit of one touch at each size, and the smallest size that reaches the wanted error, if any does.
 struct Separated {
     axis: SizeAxis,
-    curves: Vec<Curve>,
+    threshold: f64,
+    points: Vec<SeparationPoint>,
     wanted: Option<f64>,
+    smallest: Option<SmallestSize>,
 }
 
 fn certain(point: &SeparationPoint) -> u128 {
@@ -257,10 +239,6 @@ fn short(value: f64) -> String {
 }
 
 impl Separated {
-    fn points(&self) -> impl Iterator<Item = &SeparationPoint> {
-        self.curves.iter().flat_map(|(_, points, _)| points)
-    }
-
     fn record(&self, point: &SeparationPoint) -> Record<'static> {
         Record(vec![
             (self.axis.name(), json!(point.value)),
@@ -283,28 +261,7 @@ impl Separated {
         record
     }
 
-    /// The name of the horizontal axis of a plot, and its curves: over the sizes, or over the thresholds if there is
-    /// only one size.
-    fn plotted(&self) -> (&'static str, Vec<Line>) {
-        let (name, several) = (self.axis.name(), self.curves.len() > 1);
-        if several && self.curves.iter().all(|(_, points, _)| points.len() == 1) {
-            let points = self
-                .points()
-                .map(|point| (point.threshold, point.limit.error()));
-            let size = self.points().next().map_or(0.0, |point| point.value);
-            let curve = (format!("{name} {}", short(size)), points.collect());
-            return ("threshold", vec![curve]);
-        }
-        let curves = self.curves.iter().map(|(threshold, points, _)| {
-            let points = points
-                .iter()
-                .map(|point| (point.value, point.limit.error()));
-            (format!("threshold {}", short(*threshold)), points.collect())
-        });
-        (name, curves.collect())
-    }
-
-    /// What the search found for each threshold.
+    /// What the search found.
     fn found(&self) -> String {
         let Some(wanted) = self.wanted.map(short) else {
             return String::new();
@@ -314,28 +271,19 @@ impl Separated {
             SizeAxis::Scale => ["scale", "smallest", "smaller", "larger", ""],
             SizeAxis::Pitch => ["pitch", "coarsest", "coarser", "finer", " mm"],
         };
-        let mut text = String::new();
-        for (threshold, _, smallest) in &self.curves {
-            if self.curves.len() > 1 {
-                text += &format!("threshold {}: ", short(*threshold));
-            }
-            let Some(found) = smallest else {
-                text += &format!("no {noun} that was tried has an error of at most {wanted}\n");
-                continue;
-            };
-            let (size, error) = (short(found.point.value), percent(found.point.limit.error()));
-            text += &format!(
-                "the {extreme} {noun} with an error of at most {wanted} is {size}{unit}: {error}\n"
-            );
-            if found.step == 0.0 {
-                text +=
-                    &format!("  no {smaller} {noun} was tried; one may reach the error as well\n");
-            }
-            if found.missed_again > 0 {
-                let sizes = counted(found.missed_again as u64, &format!("{larger} {noun}"));
-                text +=
-                    &format!("  the error is not monotonic: it is too large again at {sizes}\n");
-            }
+        let Some(found) = &self.smallest else {
+            return format!("no {noun} that was tried has an error of at most {wanted}\n");
+        };
+        let (size, error) = (short(found.point.value), percent(found.point.limit.error()));
+        let mut text = format!(
+            "the {extreme} {noun} with an error of at most {wanted} is {size}{unit}: {error}\n"
+        );
+        if found.step == 0.0 {
+            text += &format!("  no {smaller} {noun} was tried; one may reach the error as well\n");
+        }
+        if found.missed_again > 0 {
+            let sizes = counted(found.missed_again as u64, &format!("{larger} {noun}"));
+            text += &format!("  the error is not monotonic: it is too large again at {sizes}\n");
         }
         text
     }
@@ -346,7 +294,7 @@ impl Table for Separated {
         let name = self.axis.name();
         let titles = [name, "threshold", "error", "certain", "imprints", "sensor"];
         let mut rows = vec![row(titles)];
-        for point in self.points() {
+        for point in &self.points {
             let (side, keys) = (point.side, grouped(point.limit.keys as u64));
             let (error, certain) = (
                 percent(point.limit.error()),
@@ -356,27 +304,11 @@ impl Table for Separated {
             let side = format!("{side} × {side}");
             rows.push(row([&size, &threshold, &error, &certain, &keys, &side]));
         }
-        let mut text = table(&rows, &[0]);
-        let (name, curves) = self.plotted();
-        for (title, points) in &curves {
-            let curve = plot::lines("error", name, points, Charset::current());
-            if curve.is_empty() {
-                continue;
-            }
-            text.push('\n');
-            if curves.len() > 1 {
-                text += &format!("{title}\n");
-            }
-            text += &curve;
-        }
-        match self.found() {
-            none if none.is_empty() => text,
-            found => text + "\n" + &found,
-        }
+        table(&rows, &[0]) + &self.found()
     }
 
     fn records(&self) -> Vec<Record<'static>> {
-        self.points().map(|point| self.record(point)).collect()
+        self.points.iter().map(|point| self.record(point)).collect()
     }
 
     /// With `--want`, `smallest`, `step` and `missed_again` are null if no size reaches the error.
@@ -386,39 +318,32 @@ impl Table for Separated {
             axis: &'static str,
             points: Vec<Record<'static>>,
             #[serde(skip_serializing_if = "Option::is_none")]
-            want: Option<Vec<Value>>,
+            want: Option<[Value; 1]>,
         }
+        let found = self.smallest.as_ref();
         let want = self.wanted.map(|error| {
-            let found = self.curves.iter().map(|(threshold, _, found)| {
-                let found = found.as_ref();
-                json!({
-                    "threshold": threshold,
-                    "error": error,
-                    "smallest": found.map(|own| self.object(&own.point)),
-                    "step": found.map(|own| own.step),
-                    "missed_again": found.map(|own| own.missed_again),
-                })
-            });
-            found.collect()
+            [json!({
+                "threshold": self.threshold,
+                "error": error,
+                "smallest": found.map(|own| self.object(&own.point)),
+                "step": found.map(|own| own.step),
+                "missed_again": found.map(|own| own.missed_again),
+            })]
         });
-        let points = self.points().map(|point| self.object(point));
+        let points = self.points.iter().map(|point| self.object(point));
         let (axis, points) = (self.axis.name(), points.collect());
         json::text(&Answer { axis, points, want }) + "\n"
     }
 
-    /// The wanted error is a line as long as the curves.
+    /// The wanted error is a line as long as the curve.
     fn svg(&self) -> Option<String> {
-        let (name, curves) = self.plotted();
-        let name = name.replace("_mm", " / mm");
-        let mut plot = Plot::new(&name, "error");
-        for (title, points) in &curves {
-            plot = plot.with_curve(title, points);
-        }
-        if let Some(wanted) = self.wanted {
-            let points = || curves.iter().flat_map(|(_, points)| points);
-            let first = points().fold(f64::INFINITY, |least, point| least.min(point.0));
-            let last = points().fold(0.0, |most: f64, point| most.max(point.0));
-            let line = [(first, wanted), (last, wanted)];
+        let name = self.axis.name().replace("_mm", " / mm");
+        let points = self.points.iter();
+        let points: Vec<_> = points.map(|own| (own.value, own.limit.error())).collect();
+        let title = format!("threshold {}", short(self.threshold));
+        let mut plot = Plot::new(&name, "error").with_curve(&title, &points);
+        if let (Some(wanted), [(first, _), .., (last, _)]) = (self.wanted, &points[..]) {
+            let line = [(*first, wanted), (*last, wanted)];
             plot = plot.with_curve(&format!("wanted {}", short(wanted)), &line);
         }
         Some(plot.svg())

@@ -62,7 +62,7 @@ pub(crate) struct Train {
     name: Option<Name>,
     #[command(flatten)]
     ranges: RangeFlags,
-    /// Positions per cell along x and y; default 100
+    /// Positions per cell along x and y: 1, 2, 4, 5, 10, 20, 25, 50 or 100; default 100
     #[arg(long, value_name = "N", value_parser = positions, help_heading = "Grid")]
     positions: Option<CellPositions>,
     /// Point that x0 and y0 place: corner or centre; default corner with --x0 or --y0, else centre
