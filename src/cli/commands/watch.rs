@@ -280,7 +280,7 @@ impl Watcher<'_> {
                 }
             }
             AcquireEvent::Ended(counts) => return self.end_stream(counts),
-            AcquireEvent::Silent { reason, .. } | AcquireEvent::Anew(reason) => self.say(reason),
+            AcquireEvent::Silent { reason, .. } => self.say(reason),
             AcquireEvent::Lost(error) => self.say(AcquireEvent::lost(error)),
             AcquireEvent::Back { gap } => self.say(AcquireEvent::back_after(gap)),
             AcquireEvent::Note(note) if !note.is_plain() => self.warn(noted(note)),

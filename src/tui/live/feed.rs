@@ -318,10 +318,6 @@ impl Feed {
                 }
             }),
             AcquireEvent::Follows => self.change(|pending| pending.batch.status.follows = true),
-            // A note rather than a state: the next frame would replace a state at once.
-            AcquireEvent::Anew(how) => {
-                self.change(|pending| pending.batch.status.set_note(format!("the file {how}")))
-            }
             AcquireEvent::Ended(counts) => self.change(|pending| {
                 pending.batch.status.counts = counts.clone();
                 let hint = match counts.reason {

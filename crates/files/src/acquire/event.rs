@@ -142,8 +142,6 @@ pub enum AcquireEvent<'a> {
     },
     /// The end of a recording that has grown is reached: from now on frames arrive as they are written. Reported once.
     Follows,
-    /// A growing file is read again from its start, for this reason in words that follow its name.
-    Anew(&'a str),
     /// The end of a stream, with its counts.
     Ended(&'a StreamCounts),
 }

@@ -1,11 +1,10 @@
 //! An open source as an input that waits: reading it takes as long as bytes need to come. Meanwhile the session ticks.
 
 use std::cell::RefCell;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, BufReader, ErrorKind, Read};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::os::fd::OwnedFd;
-use std::path::{Path, PathBuf};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
@@ -14,7 +13,6 @@ use crate::acquire::event::AcquireOptions;
 use crate::acquire::session::Session;
 use crate::acquire::source::{FrameSource, check_address};
 use crate::acquire::unix;
-use crate::storage::FileId;
 
 const CHUNK: usize = 1 << 16;
 
@@ -29,11 +27,7 @@ pub(super) enum OpenSource {
     /// What is waited for by its descriptor.
     Device(File),
     /// A file, and the number of bytes that were read of it.
-    File {
-        path: PathBuf,
-        file: File,
-        offset: u64,
-    },
+    File { file: File, offset: u64 },
 }
 
 /// The reason why an input has ended.
@@ -44,8 +38,6 @@ pub(super) enum InputEnd {
     /// No more is wanted.
     Stopped,
     Lost(io::Error),
-    /// The file is to be read from its start again, for this reason in words.
-    Anew(&'static str),
 }
 
 impl OpenSource {
@@ -65,17 +57,13 @@ impl OpenSource {
                 unix::open_line(path, baud)?
             }
             FrameSource::Fifo(path) => unix::open_fifo(path)?,
-            FrameSource::File(path) => return Ok(Some(Self::file(path, File::open(path)?))),
+            FrameSource::File(path) => return Ok(Some(Self::file(File::open(path)?))),
         };
         Ok(Some(Self::Device(device)))
     }
 
-    pub(super) fn file(path: &Path, file: File) -> Self {
-        Self::File {
-            path: path.to_owned(),
-            file,
-            offset: 0,
-        }
+    pub(super) fn file(file: File) -> Self {
+        Self::File { file, offset: 0 }
     }
 }
 
@@ -114,7 +102,7 @@ impl<'s, 'a, 'b> WaitingInput<'s, 'a, 'b> {
                     Ok(count) => count.unwrap_or(0),
                     Err(error) => return Err(InputEnd::Lost(error)),
                 },
-                OpenSource::File { path, file, offset } => {
+                OpenSource::File { file, offset } => {
                     let count = match file.read(bytes) {
                         // Without bytes, a read that a signal interrupted would count as the end of the file.
                         Err(error) if error.kind() == ErrorKind::Interrupted => continue,
@@ -122,8 +110,9 @@ impl<'s, 'a, 'b> WaitingInput<'s, 'a, 'b> {
                     };
                     *offset += count as u64;
                     if count == 0 {
-                        if let Some(how) = rewritten(path, file, *offset).map_err(InputEnd::Lost)? {
-                            return Err(InputEnd::Anew(how));
+                        if file.metadata().map_err(InputEnd::Lost)?.len() < *offset {
+                            let cut = io::Error::other("it was truncated meanwhile");
+                            return Err(InputEnd::Lost(cut));
                         }
                         if !session.may_go_on() {
                             return Err(InputEnd::Closed);
@@ -157,21 +146,6 @@ impl Read for WaitingInput<'_, '_, '_> {
             _ => Err(ErrorKind::UnexpectedEof.into()),
         }
     }
-}
-
-/// Why a file that was read to this end must be read from its start again: it has become shorter, or another one has its
-/// name. While no file has the name, the open one is the only one.
-fn rewritten(path: &Path, file: &File, offset: u64) -> io::Result<Option<&'static str>> {
-    let own = file.metadata()?;
-    if own.len() < offset {
-        return Ok(Some("was truncated: reading it again from its start"));
-    }
-    let named = fs::metadata(path).ok().filter(fs::Metadata::is_file);
-    let is_other =
-        named.is_some_and(|named| FileId::in_metadata(&named) != FileId::in_metadata(&own));
-    // Bytes may have been appended before the other file got the name.
-    let is_replaced = is_other && own.len() == offset;
-    Ok(is_replaced.then_some("was replaced: reading the new file from its start"))
 }
 
 /// Connects on a thread of its own. The thread is abandoned if the connection is no longer wanted, because looking up

@@ -126,7 +126,7 @@ pub fn acquire(
         reading.size = options.size.or(options.stream_size);
         reading.format = options.format.or(options.stream_format);
     }
-    let opened = recording.map(|(path, file, _)| OpenSource::file(path, file));
+    let opened = recording.map(|(_, file, _)| OpenSource::file(file));
     stream(source, opened, &reading, &RefCell::new(session))
 }
 
@@ -216,15 +216,6 @@ fn stream(
             return Ok(());
         }
         let lost = match end {
-            Some(InputEnd::Anew(how)) => {
-                if session.report(AcquireEvent::Anew(how)).is_break() {
-                    return Ok(());
-                }
-                reader.begin_anew();
-                next = reopened(source, &mut session, TICK)?;
-                session.begin_anew();
-                continue;
-            }
             Some(InputEnd::Closed) if comes_back => {
                 io::Error::new(ErrorKind::UnexpectedEof, "the other end has closed it")
             }

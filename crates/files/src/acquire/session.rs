@@ -195,14 +195,6 @@ impl<'a, 'b> Session<'a, 'b> {
         }
     }
 
-    /// Notes that a file is read from its start again: all that it holds now has arrived since it was opened.
-    pub(super) fn begin_anew(&mut self) {
-        self.begin();
-        if let Some(growth) = &mut self.growth {
-            (growth.has_grown, growth.has_caught_up) = (true, true);
-        }
-    }
-
     /// Begins a recording again, if it is to be repeated. A recording without frames is not: it would be read again and
     /// again without a pause.
     pub(super) fn begins_again(&mut self) -> bool {

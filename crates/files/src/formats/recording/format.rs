@@ -98,7 +98,7 @@ pub static FORMATS: [Format; 10] = [
         name: "ros2",
         title: "ros2 topic echo",
         stream: Some("ros2"),
-        sniff: |head, options, _| is_text(head) && echo::sniff(text_of(head), options),
+        sniff: |head, options, _| is_text(head) && echo::sniff(without_mark(head), options),
         read: Reader::Bytes(echo::read),
     },
     Format {
@@ -120,7 +120,7 @@ pub static FORMATS: [Format; 10] = [
         title: "CSV",
         stream: Some("lines"),
         sniff: |head, options, is_all| {
-            is_text(head) && table::sniff(text_of(head), options, is_all)
+            is_text(head) && table::sniff(without_mark(head), options, is_all)
         },
         read: Reader::Bytes(table::read),
     },
@@ -216,7 +216,7 @@ pub fn read(
 
 /// The error for a content of no known format.
 pub(super) fn refused(head: &[u8]) -> ReadError {
-    let text = text_of(head).trim_ascii();
+    let text = without_mark(head).trim_ascii();
     if is_bitmap(head) {
         foreign("a PBM image (taxel describe reads it)")
     } else if head.starts_with(b"SQLite format 3\0") {
@@ -225,17 +225,11 @@ pub(super) fn refused(head: &[u8]) -> ReadError {
         ReadError::new("empty, expected a recording").of_kind(ReadErrorKind::UnknownFormat)
     } else if !text.is_empty() && text.iter().all(|byte| b"#.\r\n".contains(byte)) {
         foreign("an imprint as text (taxel describe reads it)")
-    } else if table::is_column(text_of(head)) {
+    } else if table::is_column(without_mark(head)) {
         unshaped(1, None)
     } else {
         unknown_format()
     }
-}
-
-/// The text without a byte order mark, and without the zero bytes that a truncated file begins with.
-fn text_of(head: &[u8]) -> &[u8] {
-    let zeros = head.iter().take_while(|&&byte| byte == 0).count();
-    without_mark(&head[zeros..])
 }
 
 fn has(text: &[u8], word: &[u8]) -> bool {
@@ -246,14 +240,14 @@ fn is_bitmap(head: &[u8]) -> bool {
     matches!(head, [b'P', b'1' | b'4', blank, ..] if blank.is_ascii_whitespace())
 }
 
-/// Whether this may be the text of a recording; zero bytes at its beginning are what a truncated file has there.
+/// Whether this may be the text of a recording.
 fn is_text(head: &[u8]) -> bool {
-    let text = text_of(head);
+    let text = without_mark(head);
     !text.contains(&0) && !is_bitmap(text) && !text.starts_with(b"<")
 }
 
 fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
-    text_of(text).split(|&byte| byte == b'\n')
+    without_mark(text).split(|&byte| byte == b'\n')
 }
 
 fn is_tekscan(head: &[u8]) -> bool {
@@ -272,7 +266,7 @@ fn is_xsensor(head: &[u8]) -> bool {
 
 /// For rows without keys, or all objects in one list, the reader of JSON lines says what it expected.
 fn is_json(head: &[u8], options: &ReadOptions) -> bool {
-    let text = text_of(head).trim_ascii_start();
+    let text = without_mark(head).trim_ascii_start();
     let inside = text.strip_prefix(b"[").map(<[u8]>::trim_ascii_start);
     let is_list = inside.is_some_and(|inside| inside.starts_with(b"{"));
     let is_line = || lines(text).skip(1).any(|line| line.starts_with(b"{"));

@@ -54,8 +54,6 @@ pub struct StreamReader {
     options: ReadOptions,
     /// Once it is known.
     format: Option<&'static Format>,
-    /// The format of the content before.
-    before: Option<&'static Format>,
     state: ReadState,
     is_joined: bool,
 }
@@ -86,19 +84,10 @@ impl StreamReader {
         };
         Self {
             format: options.format,
-            before: None,
             is_joined: options.is_joined,
             state: ReadState::default(),
             options,
         }
-    }
-
-    /// Prepares for the first byte of other content, perhaps in another format: a file was replaced. The channels and
-    /// the clock go on, and so may what was written there before.
-    pub fn begin_anew(&mut self) {
-        self.before = self.format.or(self.before);
-        self.format = self.options.format;
-        self.is_joined = false;
     }
 
     /// Reads until the input ends, or the consumer wants no more. An end by [`ErrorKind::UnexpectedEof`](std::io::ErrorKind) may have cut
@@ -120,7 +109,7 @@ impl StreamReader {
         let mut head = Vec::new();
         let format = match self.format {
             Some(format) => format,
-            None => match look(input, &options, self.before, &mut head)? {
+            None => match look(input, &options, &mut head)? {
                 Some(format) => *self.format.insert(format),
                 None => return Ok(()),
             },
@@ -150,18 +139,9 @@ impl StreamReader {
 fn look(
     input: &mut dyn BufRead,
     options: &ReadOptions,
-    before: Option<&'static Format>,
     head: &mut Vec<u8>,
 ) -> Result<Option<&'static Format>, ReadError> {
     let (mut seen, mut tried, mut lines) = (0, 0, 0);
-    let joined = ReadOptions {
-        is_joined: true,
-        ..options.clone()
-    };
-    let format_of = |head: &[u8], is_all| {
-        let goes_on = before.filter(|before| before.is_begun_in(head, &joined, is_all));
-        goes_on.or_else(|| format_of_head(head, options, is_all))
-    };
     loop {
         let has_ended = take_bytes(input, usize::MAX, head)?;
         let is_all = has_ended || head.len() >= LOOKED_AT;
@@ -170,7 +150,7 @@ fn look(
             // The same steps however far the pieces reach. Markers decide at once.
             if at <= MARKERS || is_line || at >= tried + STEP.max(tried / 8) {
                 (tried, lines) = (at, lines + usize::from(is_line));
-                if let Some(format) = format_of(&head[..at], false) {
+                if let Some(format) = format_of_head(&head[..at], options, false) {
                     return Ok(Some(format));
                 }
             }
@@ -179,7 +159,7 @@ fn look(
         if is_all {
             let head = &head[..head.len().min(LOOKED_AT)];
             let is_binary = str::from_utf8(head).is_err_and(|error| error.error_len().is_some());
-            return match format_of(head, true) {
+            return match format_of_head(head, options, true) {
                 Some(format) => Ok(Some(format)),
                 None if head.is_empty() || options.is_joined && has_ended => Ok(None),
                 None if options.size.is_none() && is_binary => {

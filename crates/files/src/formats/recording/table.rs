@@ -31,14 +31,10 @@ const MOST_FIELDS: usize = MAX_FRAME_CELLS + 16;
 /// The most rows that are waited for until it is clear how a live stream is arranged: more than a sensor has.
 const MOST_LIVE_ROWS: usize = 65;
 
-/// The most lines above those that continue a table after an interruption.
-const MOST_ABOVE: usize = 8;
-
 /// The most bytes of the lines that are waited for.
 const MOST_HELD: usize = 16 << 20;
 
-/// How a table is arranged: of each field, what it is. An interrupted stream goes on with it, as does a file that was
-/// emptied.
+/// How a table is arranged: of each field, what it is. An interrupted stream goes on with it.
 #[derive(Clone, Debug)]
 pub(super) struct TableLayout {
     separator: Separator,
@@ -245,27 +241,19 @@ impl Table<'_, '_> {
         self.sink.advance(&mut self.lines)
     }
 
-    /// The layout before an interruption, if one of the next lines continues it: the first ones may be torn, or messages.
-    /// A header right above says otherwise.
+    /// The layout before an interruption, unless a header comes again.
     fn earlier(&mut self) -> Result<Option<TableLayout>, Stop> {
         let Some(layout) = self.sink.state.layout.clone() else {
             return Ok(None);
         };
-        let count = layout.uses.len();
-        let (mut held, mut header, mut goes_on) = (Vec::new(), None, None);
-        while goes_on.is_none() && held.len() < MOST_ABOVE && self.advance()? {
-            let (number, line) = self.lines.held();
-            let fields: Vec<&[u8]> = layout.fields(bare(&line).1).collect();
-            if self.is_header(&fields, layout.separator) {
-                header = Some((number + 1, fields.len()));
-            } else if fields.len() == count {
-                goes_on = Some(header != Some((number, count)));
-            }
-            held.push((number, line));
+        if !self.advance()? {
+            return Ok(Some(layout));
         }
-        let goes_on = goes_on.unwrap_or(held.is_empty());
-        self.lines.unread(held);
-        Ok(Some(layout).filter(|_| goes_on))
+        let (number, line) = self.lines.held();
+        let fields: Vec<&[u8]> = layout.fields(bare(&line).1).collect();
+        let begins_anew = fields.len() > 1 && self.is_header(&fields, layout.separator);
+        self.lines.unread([(number, line)]);
+        Ok(Some(layout).filter(|_| !begins_anew))
     }
 
     /// Finds out how the table is arranged; the lines of its numbers are read again. In a live stream, lines that do not

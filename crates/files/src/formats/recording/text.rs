@@ -1,7 +1,6 @@
 //! Reads text: its lines, the fields of a line, and the numbers in them.
 //!
-//! Lines end in LF or CR LF. A byte order mark at the beginning of the text is not part of a line, nor are zero bytes
-//! there: a file begins with them if it was truncated while a program kept its place in it.
+//! Lines end in LF or CR LF. A byte order mark at the beginning of the text is not part of a line.
 //! ```text
 //! 0;1,5;;3      semicolons: a comma is the decimal sign, and an empty field is no cell
 //! 0,1.5,,3      commas, or tabs
@@ -164,11 +163,6 @@ impl<R: BufRead> TextLines<R> {
                     return Ok(false);
                 }
                 break;
-            }
-            if self.read == 0 && self.line.is_empty() && bytes[0] == 0 {
-                let zeros = bytes.iter().take_while(|&&byte| byte == 0).count();
-                self.input.consume(zeros);
-                continue;
             }
             let end = bytes.iter().position(|&byte| byte == b'\n');
             let part = &bytes[..end.unwrap_or(bytes.len())];
