@@ -58,13 +58,7 @@ fn every_format_of_an_imprint_has_the_same_description() {
     assert_eq!(folder.run("export washer a.txt"), said("written: a.txt\n"));
     let expected = folder.run("describe a.txt --json");
     assert!(expected.stdout.contains("\"nae\":"));
-    for name in [
-        "a.pbm",
-        "a.csv",
-        "a.npy",
-        "A.CSV",
-        "plain --format pbm-plain",
-    ] {
+    for name in ["a.pbm", "a.csv", "a.npy", "A.CSV", "bits --format pbm"] {
         let run = folder.run(&format!("export a.txt {name}"));
         assert_eq!(run.status, Some(0), "{name}");
         let file = name.split(' ').next().expect("a name");
@@ -73,7 +67,6 @@ fn every_format_of_an_imprint_has_the_same_description() {
         let saved = folder.run(&format!("--library lib library save same {file} --force"));
         assert_eq!(saved, said("saved as same\n"));
     }
-    assert!(folder.read("plain").starts_with(b"P1\n16 16\n"));
     assert!(folder.read("a.pbm").starts_with(b"P4\n16 16\n"));
     let stored = folder.run("--library lib library show same --json");
     assert_eq!(stored.stdout, expected.stdout);
@@ -126,10 +119,8 @@ fn a_stored_shape_is_drawn_with_its_outline_name_and_pitch() {
 
 #[test]
 fn imprints_are_exported_through_standard_input_and_output() {
-    let plain = "P1\n3 2\n101\n111\n";
-    let run = taxel("export - - --format pbm-plain", "1,0,1\n1,1,1\n");
-    assert_eq!(run, said(plain));
-    assert_eq!(taxel("export - - --format txt", plain), said("#.#\n###\n"));
+    let run = taxel("export - - --format txt", "1,0,1\n1,1,1\n");
+    assert_eq!(run, said("#.#\n###\n"));
     let run = taxel(
         "figure hexagon --export - --format csv --columns 4 --rows 1",
         "",
@@ -211,12 +202,8 @@ fn bad_targets_are_refused_with_what_is_expected() {
     ] {
         misused(line, message);
     }
-    let run = taxel("export - - --format csv", "P1 2 1 2");
-    refused(
-        &run,
-        1,
-        "standard input: PBM: expected 2 digits, each 0 or 1",
-    );
+    let run = taxel("export - - --format csv", "P4 2 1 ");
+    refused(&run, 1, "standard input: PBM: expected 1 bytes of bits");
 }
 
 #[test]

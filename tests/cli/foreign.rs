@@ -12,14 +12,7 @@ use super::python_has;
 /// Returns the washer as rows of `#` and `.`, and a folder with its files.
 fn washer() -> (String, TempDir) {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
-    for name in [
-        "a.txt",
-        "a.npy",
-        "a.csv",
-        "a.pbm",
-        "a.svg",
-        "plain.pbm --format pbm-plain",
-    ] {
+    for name in ["a.txt", "a.npy", "a.csv", "a.pbm", "a.svg"] {
         export(folder.path(), &format!("washer {name}"));
     }
     let text = std::fs::read_to_string(folder.path().join("a.txt")).expect("written");
@@ -97,9 +90,8 @@ fn files_are_exchanged_with_pillow() {
     // Black is an active taxel; in Pillow's own bitmaps, 0 is black.
     let script = "
 from PIL import Image
-a, b = Image.open('a.pbm'), Image.open('plain.pbm')
-assert a.mode == b.mode == '1' and a.size == (16, 16)
-assert a.tobytes() == b.tobytes()
+a = Image.open('a.pbm')
+assert a.mode == '1' and a.size == (16, 16)
 a.save('pillow.pbm')
 for y in range(16):
     print(''.join('.' if a.getpixel((x, y)) else '#' for x in range(16)))

@@ -274,7 +274,7 @@ fn frames_are_exported_with_their_number_and_saved() {
         let svg = folder.path().join(format!("touch-{number}.svg"));
         let svg = std::fs::read_to_string(svg).expect("it is written");
         assert!(
-            svg.contains("class=\"heat\"") && svg.contains("x / mm"),
+            svg.contains("class=\"described-taxels\"") && svg.contains("x / mm"),
             "{svg}"
         );
     }

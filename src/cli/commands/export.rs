@@ -29,7 +29,7 @@ only with --force. To export a figure, use 'taxel figure ... --export'.
 Examples:
   taxel export washer washer.svg --pitch 2.5
   taxel export imprint.txt imprint.npy --force
-  taxel export key - --format pbm-plain
+  taxel export key - --format csv
   taxel figure hexagon --angle 17 --export hexagon.svg";
 
 /// Write a shape for other programs, or draw it

@@ -85,7 +85,7 @@ pub(crate) struct Frames {
         help = "Print CSV, one line per frame: force, contact,\ncentre of pressure, descriptors"
     )]
     csv: bool,
-    /// Show the values as shades, also in drawings
+    /// Show the values as shades
     #[arg(long, requires = "choice", conflicts_with = "noise_report")]
     heat: bool,
     #[command(flatten)]
@@ -115,7 +115,7 @@ Examples:
   taxel frames recording.csv --all --percent 25 --tare 2 --json
   taxel frames recording.csv --csv --tare 2 > force.csv
   taxel frames recording.csv --frame 3 --low 5 --high 20 --heat --ascii
-  taxel frames recording.csv --peak --at-least 10 --heat --export touch.svg
+  taxel frames recording.csv --peak --at-least 10 --export touch.svg
   taxel frames recording.csv --peak --at-least 10 --model parts --noise 0.01
   taxel frames labelled.csv --all --at-least 10 --model parts --expect-labels
   taxel frames recording.csv --noise-report --at-least 10 --export mask.txt
@@ -748,11 +748,7 @@ impl Answering<'_> {
             lines.extend(without_pitch);
             lines.push(report::size(&imprint, None, pitch));
         }
-        let drawn = || {
-            let mut drawing = drawing(&imprint, None, &titles[0], pitch);
-            drawing.heat = heat.cloned();
-            drawing
-        };
+        let drawn = || drawing(&imprint, None, &titles[0], pitch);
         let shape = |name| StoredShape {
             name,
             sensor: sensor(&imprint, pitch),

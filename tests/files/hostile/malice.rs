@@ -127,7 +127,7 @@ const JOBS: [Malice; 3] = [
 ];
 
 const EXCHANGES: [Malice; 4] = [
-    ("comments", || filled("P1", "# a\n", "1 1 1")),
+    ("comments", || filled("P4", "# a\n", "1 1 1")),
     ("a long row of numbers", || filled("", "1,", "1")),
     ("many rows of numbers", || filled("", "1\n", "")),
     ("a long shape", || {

@@ -4,7 +4,7 @@
 //!
 //! ```
 //! use taxel_files::formats::{Drawing, ExportFormat, read_imprint};
-//! let cup = read_imprint(b"P1\n3 2\n101\n111\n")?;
+//! let cup = read_imprint(b"#.#\n###\n")?;
 //! let format = ExportFormat::of_path("imprint.csv").unwrap();
 //! assert_eq!((format.write)(&Drawing::new(&cup)), b"1,0,1\n1,1,1\n");
 //! # Ok::<(), taxel_files::ReadError>(())
@@ -26,10 +26,8 @@ pub const MAX_BYTES: usize = 1 << 20;
 /// A format in which an imprint is written, or drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct ExportFormat {
-    /// The name on the command line.
+    /// The name on the command line, and the extension of files.
     pub name: &'static str,
-    /// The extension of files in this format; None if another format has the same.
-    pub ending: Option<&'static str>,
     /// Returns the content of a file. Only a drawing shows more than the imprint.
     pub write: fn(&Drawing) -> Vec<u8>,
 }
@@ -39,32 +37,22 @@ impl ExportFormat {
     pub const ALL: &'static [Self] = &[
         Self {
             name: "txt",
-            ending: Some("txt"),
             write: |drawing| format!("{}\n", drawing.imprint).into_bytes(),
         },
         Self {
             name: "pbm",
-            ending: Some("pbm"),
-            write: |drawing| pbm::raw(&drawing.imprint),
-        },
-        Self {
-            name: "pbm-plain",
-            ending: None,
-            write: |drawing| pbm::plain(&drawing.imprint),
+            write: |drawing| pbm::write(&drawing.imprint),
         },
         Self {
             name: "csv",
-            ending: Some("csv"),
             write: |drawing| table::write(&drawing.imprint),
         },
         Self {
             name: "npy",
-            ending: Some("npy"),
             write: |drawing| numpy::imprint::write(&drawing.imprint),
         },
         Self {
             name: Self::SVG,
-            ending: Some(Self::SVG),
             write: |drawing| drawing.svg().into_bytes(),
         },
     ];
@@ -74,9 +62,8 @@ impl ExportFormat {
 
     /// The format for the extension of a file's name, in upper or lower case; None if no format has it.
     pub fn of_path(path: impl AsRef<Path>) -> Option<&'static Self> {
-        let has_ending = |ending| has_ending(&path, ending);
         let mut formats = Self::ALL.iter();
-        formats.find(|format| format.ending.is_some_and(has_ending))
+        formats.find(|format| has_ending(&path, format.name))
     }
 }
 

@@ -1,8 +1,7 @@
-//! An imprint as a portable bitmap: plain (`P1`, digits) or raw (`P4`, bits), black for an active taxel.
+//! An imprint as a portable bitmap of bits (`P4`), black for an active taxel.
 //!
-//! Source: <https://netpbm.sourceforge.net/doc/pbm.html>. A comment runs from `#` to the end of its line; the digits
-//! of a plain bitmap need no spaces between them. A file holds one bitmap, of at most 64 × 64. Padding bits in the
-//! last byte of a row do not count.
+//! Source: <https://netpbm.sourceforge.net/doc/pbm.html>. A comment runs from `#` to the end of its line. A file holds
+//! one bitmap, of at most 64 × 64. Padding bits in the last byte of a row do not count.
 
 use taxel_core::imprint::Imprint;
 use taxel_core::sensor::MatrixSize;
@@ -10,53 +9,33 @@ use taxel_core::sensor::MatrixSize;
 use crate::error::ReadError;
 
 pub(super) fn begins(bytes: &[u8]) -> bool {
-    bytes.starts_with(b"P1") || bytes.starts_with(b"P4")
+    bytes.starts_with(b"P4")
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<Imprint, ReadError> {
     let wrong = |message: &str| ReadError::new(message).of_key("PBM");
-    let (magic, mut rest) = bytes.split_at(2);
+    let mut rest = &bytes[2..];
     let sides = number(&mut rest).zip(number(&mut rest));
     let size = sides.and_then(|(columns, rows)| MatrixSize::of_sides(columns, rows));
     let size = size.ok_or_else(|| wrong("expected a width and a height, 1 to 64 each"))?;
-    let mut imprint = Imprint::empty(size);
-    if magic == b"P4" {
-        let width = usize::from(size.columns()).div_ceil(8);
-        let length = width * usize::from(size.rows());
-        // One blank separates the height from the bits, which may look like blanks.
-        let bits = match rest {
-            [blank, bits @ ..] if blank.is_ascii_whitespace() => bits.split_at_checked(length),
-            _ => None,
-        };
-        let (bits, after) =
-            bits.ok_or_else(|| wrong(&format!("expected {length} bytes of bits")))?;
-        for (row, bytes) in bits.chunks(width).enumerate() {
-            // The leftmost taxel is a byte's highest bit, and a word's lowest.
-            let word = bytes.iter().rev().fold(0, |word: u64, byte| {
-                word << 8 | u64::from(byte.reverse_bits())
-            });
-            imprint.set_word(row, word);
-        }
-        rest = after;
-    } else {
-        for row in 0..size.rows() {
-            for column in 0..size.columns() {
-                rest = after_blanks(rest);
-                let active = match rest.first() {
-                    Some(b'0') => false,
-                    Some(b'1') => true,
-                    _ => {
-                        let cells = size.cells();
-                        return Err(wrong(&format!("expected {cells} digits, each 0 or 1")));
-                    }
-                };
-                imprint.set(column, row, active);
-                rest = &rest[1..];
-            }
-        }
-    }
-    if !after_blanks(rest).is_empty() {
+    let width = usize::from(size.columns()).div_ceil(8);
+    let length = width * usize::from(size.rows());
+    // One blank separates the height from the bits, which may look like blanks.
+    let bits = match rest {
+        [blank, bits @ ..] if blank.is_ascii_whitespace() => bits.split_at_checked(length),
+        _ => None,
+    };
+    let (bits, after) = bits.ok_or_else(|| wrong(&format!("expected {length} bytes of bits")))?;
+    if !after_blanks(after).is_empty() {
         return Err(wrong("expected one image and no more"));
+    }
+    let mut imprint = Imprint::empty(size);
+    for (row, bytes) in bits.chunks(width).enumerate() {
+        // The leftmost taxel is a byte's highest bit, and a word's lowest.
+        let word = bytes.iter().rev().fold(0, |word: u64, byte| {
+            word << 8 | u64::from(byte.reverse_bits())
+        });
+        imprint.set_word(row, word);
     }
     Ok(imprint)
 }
@@ -82,16 +61,7 @@ fn after_blanks(bytes: &[u8]) -> &[u8] {
     rest
 }
 
-pub(super) fn plain(imprint: &Imprint) -> Vec<u8> {
-    let mut text = format!("P1\n{} {}\n", imprint.columns(), imprint.rows());
-    for row in imprint.lines() {
-        text += &row.replace('#', "1").replace('.', "0");
-        text.push('\n');
-    }
-    text.into_bytes()
-}
-
-pub(super) fn raw(imprint: &Imprint) -> Vec<u8> {
+pub(super) fn write(imprint: &Imprint) -> Vec<u8> {
     let mut bytes = format!("P4\n{} {}\n", imprint.columns(), imprint.rows()).into_bytes();
     let width = usize::from(imprint.columns()).div_ceil(8);
     for word in imprint.words() {
@@ -114,23 +84,19 @@ mod tests {
     }
 
     #[test]
-    fn comments_may_stand_anywhere_in_a_plain_bitmap() {
-        let text = b"P1#a\n# b\n2#c\n#d\n 2 #e\n1#f\n0 01# g\n# h\n";
-        let read = read(text).map(|cup| cup.to_string());
+    fn comments_may_stand_between_the_numbers() {
+        let read = read(b"P4#a\n# b\n2#c\n#d\n 2\n\x80\x40").map(|cup| cup.to_string());
         assert_eq!(read, Ok("#.\n.#".to_owned()));
     }
 
     #[test]
     fn a_bitmap_that_is_cut_or_followed_by_more_is_refused() {
         for bytes in [
-            &b"P1"[..],
-            // Not "P1" and 11 columns: the number is not separated from the "P1".
-            b"P111 1 1",
-            b"P1\n65 1\n",
-            b"P1\n1 # no height\n",
-            b"P1\n2 2\n1\n0 2 1",
-            b"P1\n2 2\n111",
-            b"P1\n1 1\n1 # one\n1",
+            &b"P4"[..],
+            // Not "P4" and 11 columns: the number is not separated from the "P4".
+            b"P411 1 1",
+            b"P4\n65 1\n",
+            b"P4\n1 # no height\n",
             b"P4\n8 1X\xff",
             b"P4\n8 1#\xff",
             b"P4\n9 2\n\xff\xff\xff",

@@ -6,7 +6,6 @@ use std::collections::VecDeque;
 use taxel_core::description::{Description, Region, RegionKind, Value, main_region, regions};
 use taxel_core::geometry::{Ellipse, Pen, Point, Side, Solid};
 use taxel_core::imprint::Imprint;
-use taxel_core::matrix::Matrix;
 use taxel_core::parameter::Parameter;
 use taxel_core::sensor::Sensor;
 
@@ -14,7 +13,7 @@ use crate::formats::drawing::plot::axis_marks;
 use crate::formats::drawing::svg::{
     Axis, AxisMarks, CELLS, Position, Stroke, Svg, circle, ellipse, line, polyline, rectangle,
 };
-use crate::formats::value::{self, fitting, shade};
+use crate::formats::value;
 
 /// The larger side of the plane, unless its cells would become too large.
 const PLANE: f64 = 288.0;
@@ -26,8 +25,6 @@ const OTHER: u8 = 220;
 /// The hatching of taxels of other regions: a shade alone is lost on a bad printer.
 const HATCH: Stroke = Stroke::grey(0.5, 110);
 const OUTLINE: Stroke = Stroke::black(1.3);
-/// The edge around active taxels when shades show values.
-const EDGE: Stroke = Stroke::black(2.0);
 const RECTANGLE: Stroke = Stroke::black(0.9).dashed("4 2.5");
 const POINT: Stroke = Stroke::black(1.1);
 /// The radius of the circle at CD, and the arm of the cross at CG.
@@ -50,9 +47,6 @@ pub struct Drawing {
     pub pitch_mm: Option<f64>,
     /// What stands above; only its first 100 characters are drawn.
     pub title: String,
-    /// The values of all cells as shades, white for 0 and less, black for the largest, with a bold edge around active
-    /// taxels. A NaN means that there is no cell. A matrix of another size changes nothing.
-    pub heat: Option<Matrix<f64>>,
 }
 
 impl Drawing {
@@ -66,7 +60,6 @@ impl Drawing {
             outline: String::new(),
             pitch_mm: None,
             title: String::new(),
-            heat: None,
         }
     }
 
@@ -100,13 +93,8 @@ impl Drawing {
             // Marks in cells stand at whole numbers only.
             None => ("cells", 1.0, 1.0),
         };
-        let heat = self.heat.as_ref();
-        let heat = heat.filter(|values| values.size() == self.imprint.size());
         let mut svg = Svg::new((width, height));
-        match heat {
-            Some(values) => self.heat(&mut svg, values),
-            None => self.taxels(&mut svg, described),
-        }
+        self.taxels(&mut svg, described);
         let columns = (0..=self.imprint.columns()).map(|column| f64::from(column) * cell);
         let rows = (0..=self.imprint.rows()).map(|row| f64::from(row) * cell);
         let columns = columns.map(|x| line((x, 0.0), (x, height)));
@@ -132,10 +120,7 @@ impl Drawing {
             svg.line("cd", &circle(place(cd.x, cd.y), ARM), POINT);
             svg.line("cg", &cross(place(cg.x, cg.y)), POINT);
         }
-        match heat {
-            Some(values) => self.legend_of_heat(&mut svg, values),
-            None => self.legend_of_taxels(&mut svg, description.as_ref()),
-        }
+        self.legend_of_taxels(&mut svg, description.as_ref());
         if !self.outline.is_empty() {
             svg.legend_of_line("outline", OUTLINE);
         }
@@ -198,56 +183,6 @@ impl Drawing {
             svg.line("legend", &rectangle(low, high), CELLS);
         }
     }
-
-    /// Draws the values of all cells in shades, and the edge of the active ones.
-    fn heat(&self, svg: &mut Svg, values: &Matrix<f64>) {
-        const SHADES: u8 = 16;
-        let cell = self.cell();
-        let place = |column: u8, row: u8| (f64::from(column) * cell, f64::from(row) * cell);
-        let mut shades = vec![String::new(); SHADES.into()];
-        let largest = largest(values).unwrap_or(f64::INFINITY);
-        for row in 0..values.rows() {
-            for (column, &value) in (0..values.columns()).zip(values.row(row)) {
-                let shade = shade(value / largest, SHADES.into());
-                shades[shade] += &rectangle(place(column, row), place(column + 1, row + 1));
-            }
-        }
-        for (shade, cells) in (0..SHADES).zip(shades).skip(1) {
-            svg.fill("heat", &cells, 255 - shade * (255 / (SHADES - 1)));
-        }
-        let imprint = &self.imprint;
-        let mut edges = String::new();
-        for (x, y) in imprint.active() {
-            let (low, high) = (place(x, y), place(x + 1, y + 1));
-            if y == 0 || !imprint.get(x, y - 1) {
-                edges += &line(low, (high.0, low.1));
-            }
-            if x == 0 || !imprint.get(x - 1, y) {
-                edges += &line(low, (low.0, high.1));
-            }
-            if !imprint.get(x, y + 1) {
-                edges += &line((low.0, high.1), high);
-            }
-            if !imprint.get(x + 1, y) {
-                edges += &line((high.0, low.1), high);
-            }
-        }
-        svg.line("imprint", &edges, EDGE);
-    }
-
-    fn legend_of_heat(&self, svg: &mut Svg, values: &Matrix<f64>) {
-        let text = match largest(values) {
-            Some(largest) => format!("values from 0 (white) to {} (black)", fitting(largest, 9)),
-            None => "no value above 0".to_owned(),
-        };
-        let sign = svg.legend(&text);
-        let (low, high) = sign_box(sign);
-        svg.fill("legend", &rectangle((sign.0, low.1), high), 0);
-        svg.line("legend", &rectangle(low, high), CELLS);
-        let all = self.imprint.count();
-        let (low, high) = sign_box(svg.legend(&format!("active taxels: {all}")));
-        svg.line("legend", &rectangle(low, high), EDGE);
-    }
 }
 
 /// The corners of a cell as a sign of the legend.
@@ -262,12 +197,6 @@ fn hatch((left, top): Position, (right, bottom): Position) -> String {
 
 fn cross((x, y): Position) -> String {
     line((x - ARM, y), (x + ARM, y)) + &line((x, y - ARM), (x, y + ARM))
-}
-
-/// The largest value; None if no value is above 0.
-fn largest(values: &Matrix<f64>) -> Option<f64> {
-    let largest = values.values().iter().copied().fold(0.0, f64::max);
-    (largest > 0.0).then_some(largest)
 }
 
 /// The path of the whole boundary. Edges that follow each other form one piece, so that the corners between them are

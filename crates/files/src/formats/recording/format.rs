@@ -237,7 +237,7 @@ fn has(text: &[u8], word: &[u8]) -> bool {
 }
 
 fn is_bitmap(head: &[u8]) -> bool {
-    matches!(head, [b'P', b'1' | b'4', blank, ..] if blank.is_ascii_whitespace())
+    matches!(head, [b'P', b'4', blank, ..] if blank.is_ascii_whitespace())
 }
 
 /// Whether this may be the text of a recording.
