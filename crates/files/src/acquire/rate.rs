@@ -10,10 +10,6 @@ const TOGETHER: f64 = 0.1;
 /// bursts last about as long.
 const GAP: f64 = 1.0;
 
-/// The largest deviation of a burst from the mean, as a share of it, of frames that come evenly. A clock that counts
-/// hundredths of a second deviates that much from a tenth.
-const UNEVEN: f64 = 0.1;
-
 /// A measurement of the rate of the last frames.
 ///
 /// Often several frames come at once: a read returns everything that is in a pipe, or a program sends in bursts. The
@@ -30,7 +26,6 @@ pub struct FrameRate {
     most: usize,
     /// The burst that has not ended: the time of its first frame, and its number of frames.
     open: Option<(f64, f64)>,
-    falls: usize,
 }
 
 impl FrameRate {
@@ -40,7 +35,6 @@ impl FrameRate {
             bursts: VecDeque::new(),
             most,
             open: None,
-            falls: 0,
         }
     }
 
@@ -60,7 +54,6 @@ impl FrameRate {
                 }
                 self.bursts.push_back((frames, seconds));
             }
-            self.falls += usize::from(seconds < 0.0);
         }
         self.open = Some((time, 1.0));
     }
@@ -71,20 +64,6 @@ impl FrameRate {
         let frames: f64 = self.usual().map(|(frames, _)| frames).sum();
         let seconds: f64 = self.usual().map(|(_, seconds)| seconds).sum();
         Some(to_nanoseconds(seconds / frames)).filter(|&step| step > 0.0)
-    }
-
-    /// The mean time from a frame to the next, like [`Self::seconds_per_frame`], if frames came evenly; None if
-    /// more than a tenth of the times between gaps differ, or if most times are gaps or go back.
-    pub(crate) fn even_seconds_per_frame(&self) -> Option<f64> {
-        let step = self.seconds_per_frame()?;
-        let is_even = |&(frames, seconds): &(f64, f64)| {
-            let expected = frames * step;
-            (seconds - expected).abs() <= UNEVEN * expected
-        };
-        let usual = self.usual().count();
-        let breaks = self.bursts.len() - usual + self.falls;
-        let even = self.usual().filter(|burst| is_even(burst)).count();
-        (10 * even >= 9 * usual && breaks < usual).then_some(step)
     }
 
     fn usual(&self) -> impl Iterator<Item = &(f64, f64)> {
@@ -150,29 +129,6 @@ mod tests {
         );
         let steady = (0..1000).map(|frame| f64::from(frame) * 0.02);
         assert_eq!(step(steady), Some(0.02));
-    }
-
-    #[test]
-    fn an_even_rate_needs_equal_steps() {
-        let even = |times: &[f64]| {
-            let mut rate = FrameRate::over(4096);
-            for &time in times {
-                rate.add(time);
-            }
-            rate.even_seconds_per_frame()
-        };
-        assert_eq!(even(&[0.0, 0.1, 5.0, 5.2, 90.0]), None);
-        assert_eq!(even(&[0.0, 1.0, -0.5]), None);
-        assert_eq!(even(&[0.0, 0.25, 40.0]), None);
-        assert_eq!(even(&[0.0, 0.25, 0.5, 40.0]), Some(0.25));
-        // Rounded to hundredths.
-        let rounded = [0.0, 0.14, 0.29, 0.43, 0.57, 0.71, 0.86, 1.0];
-        assert_eq!(even(&rounded), Some(0.142_857_143));
-        // One frame is missing.
-        let missing = (0..600_u32).filter(|&frame| frame != 300);
-        let times: Vec<f64> = missing.map(|frame| f64::from(frame) / 64.0).collect();
-        assert!(even(&times).is_some_and(|step| (step - 1.0 / 64.0).abs() < 1e-4));
-        assert_eq!(even(&[]), None);
     }
 
     #[test]

@@ -20,7 +20,6 @@ use taxel_core::frame::{Frame, FrameSize, LARGEST_VALUE};
 use taxel_core::index::index;
 
 use crate::ReadError;
-use crate::acquire::rate::FrameRate;
 use crate::formats::file::{has_ending, system_reason};
 use crate::formats::numpy::{BEFORE_TEXT, header_of};
 use crate::formats::recording::RecordingMetadata;
@@ -42,9 +41,6 @@ const WRITTEN: Duration = Duration::from_millis(800);
 const MOST_WAITING: usize = 1 << 18;
 
 const LARGEST_METADATA: u64 = 1 << 22;
-
-/// The largest number of bursts over which the rate is measured: several minutes.
-const MOST_BURSTS: usize = 4096;
 
 /// A recorder that writes frames to a file, until [`Self::finish`] ends the recording and reports errors.
 ///
@@ -83,9 +79,6 @@ pub struct FrameRecorder {
     /// The number of records in the header.
     counted: u64,
     written: Instant,
-    rate: FrameRate,
-    /// Whether frames carry times, so that they are not only those of arrival.
-    carries_times: bool,
 }
 
 impl FrameRecorder {
@@ -128,8 +121,6 @@ impl FrameRecorder {
             counted: 0,
             written: Instant::now(),
             left_out: 0,
-            rate: FrameRate::over(MOST_BURSTS),
-            carries_times: false,
         })
     }
 
@@ -188,15 +179,6 @@ impl FrameRecorder {
     /// The system's error. Even then, the records in the file are complete.
     pub fn finish(mut self) -> Result<u64, RecorderError> {
         let written = self.flush();
-        let measured = || {
-            if self.carries_times {
-                self.rate.even_seconds_per_frame()
-            } else {
-                self.rate.seconds_per_frame()
-            }
-        };
-        let stated = self.metadata.seconds_per_frame;
-        self.metadata.seconds_per_frame = stated.or_else(measured);
         self.metadata.ended = Some(true);
         let described = self.write_metadata();
         written.and(described).map(|()| self.frames)
@@ -207,10 +189,6 @@ impl FrameRecorder {
         if size != frame.size() {
             self.left_out += 1;
             return Ok(());
-        }
-        if let Some(time) = time {
-            self.rate.add(time);
-            self.carries_times |= frame.time.is_some();
         }
         if self.frames == 0 {
             self.begin(size)?;
@@ -450,30 +428,6 @@ mod tests {
             let read = metadata_beside(&path).map_err(|error| error.to_string());
             let is_too_large = read.is_err_and(|said| said.contains("larger than 4 MiB"));
             assert_eq!(is_too_large, !is_read);
-        }
-    }
-
-    #[test]
-    fn the_time_of_a_frame_is_that_of_the_source_or_measured() {
-        let uneven = [0.0, 0.1, 5.0, 5.2];
-        for (times, are_own, stated, expected) in [
-            ([0.0, 0.25, 0.5, 0.75], false, None, Some(0.25)),
-            ([0.0, 0.25, 0.5, 0.75], false, Some(0.2), Some(0.2)),
-            ([0.0, 0.25, 0.5, 0.75], true, None, Some(0.25)),
-            (uneven, true, None, None),
-        ] {
-            let folder = tempfile::tempdir().expect("a folder");
-            let path = folder.path().join("a.npy");
-            let mut recorder = begun(&path);
-            let described = recorder.describe(|own| own.seconds_per_frame = stated);
-            described.expect("kept");
-            for time in times.map(Some) {
-                let mut frame = Frame::default();
-                frame.time = time.filter(|_| are_own);
-                recorder.add(&frame, time).expect("recorded");
-            }
-            recorder.finish().expect("finished");
-            assert_eq!(beside(&path).seconds_per_frame, expected);
         }
     }
 
