@@ -5,7 +5,7 @@
 use std::ffi::OsStr;
 use std::fmt;
 use std::fs;
-use std::io::{BufRead, BufReader, Cursor, ErrorKind};
+use std::io::{BufRead, BufReader, Cursor};
 use std::path::{Path, PathBuf};
 
 use taxel_core::progress::Progress;
@@ -77,24 +77,16 @@ pub fn save_model(model: &Model, path: &Path, existing: Existing) -> Result<(), 
     file::write(path, &file_content(model), existing)
 }
 
-/// The user's models: files `NAME.npz` in the folder `models` of a library. Models of earlier versions, which kept them
-/// in a folder `models` beside the library, are found there, too, but no file is written there.
+/// The user's models: files `NAME.npz` in the folder `models` of a library.
 ///
 /// Upper and lower case count as the same, as for shapes, so a folder can move to a file system that ignores case.
 #[derive(Clone, Debug)]
-pub struct ModelFolder {
-    own: PathBuf,
-    earlier: PathBuf,
-}
+pub struct ModelFolder(PathBuf);
 
 impl ModelFolder {
     /// The models of the library in a folder.
     pub fn of(library: &Path) -> Self {
-        let whole = std::path::absolute(library).unwrap_or_else(|_| library.to_owned());
-        Self {
-            own: library.join(FOLDER),
-            earlier: whole.with_file_name(FOLDER),
-        }
+        Self(library.join(FOLDER))
     }
 
     /// The file of a model; None if there is no model of that name.
@@ -111,16 +103,13 @@ impl ModelFolder {
     /// # Errors
     /// The system's error, except if the folder does not exist.
     pub fn list(&self) -> Result<Vec<(Name, PathBuf)>, FileError> {
-        let mut paths = paths_in(&self.own)?;
-        paths.extend(paths_in(&self.earlier).unwrap_or_default());
+        let paths = paths_in(&self.0)?;
         let named = |path: PathBuf| {
             let name = Name::new(path.file_stem()?.to_str()?).ok()?;
             (path.extension()? == ENDING).then_some((name, path))
         };
         let mut models: Vec<(Name, PathBuf)> = paths.into_iter().filter_map(named).collect();
-        // Of two of the same name, the one in the library comes first.
         models.sort_by_cached_key(|(name, _)| (folded(name.as_str()), name.clone()));
-        models.dedup_by(|next, first| next.0 == first.0);
         Ok(models)
     }
 
@@ -130,32 +119,19 @@ impl ModelFolder {
         models.map(|(name, _)| name).collect()
     }
 
-    /// Checks whether a model can be saved, without making a folder for it, so that an error comes before the training.
+    /// Makes the folder and checks whether a model can be saved in it, so that an error comes before the training.
     ///
     /// # Errors
     /// Those of [`Self::save`].
     pub fn check(&self, name: &Name, existing: Existing) -> Result<(), FileError> {
-        let path = self.target(name, existing)?;
-        if self.own.is_dir() {
-            return check_writable(&path, existing);
-        }
-        // The folders that are still missing are made when the model is saved.
-        let there = self.own.ancestors().find(|folder| folder.exists());
-        let file = path.file_name().unwrap_or_default();
-        let place = there.unwrap_or(Path::new(".")).join(file);
-        check_writable(&place, Existing::Replaced)
+        make_folder(&self.0)?;
+        check_writable(&self.target(name), existing)
     }
 
     /// The file that a model of this name gets.
-    fn target(&self, name: &Name, existing: Existing) -> Result<PathBuf, FileError> {
-        match self.find(name) {
-            Some(path) if existing == Existing::Kept => {
-                let exists = ErrorKind::AlreadyExists.into();
-                Err(FileError::cannot("write", &path)(exists))
-            }
-            Some(path) if path.starts_with(&self.own) => Ok(path),
-            _ => Ok(self.own.join(format!("{name}.{ENDING}"))),
-        }
+    fn target(&self, name: &Name) -> PathBuf {
+        let new = || self.0.join(format!("{name}.{ENDING}"));
+        self.find(name).unwrap_or_else(new)
     }
 
     /// Writes a model under a name, and makes the folder for it. Returns the path.
@@ -168,8 +144,8 @@ impl ModelFolder {
         name: &Name,
         existing: Existing,
     ) -> Result<PathBuf, FileError> {
-        let path = self.target(name, existing)?;
-        make_folder(&self.own)?;
+        let path = self.target(name);
+        make_folder(&self.0)?;
         save_model(model, &path, existing)?;
         Ok(path)
     }
@@ -540,17 +516,12 @@ mod tests {
 
     #[test]
     fn a_model_comes_back_from_its_file_as_it_was() {
-        let (folder, models) = folder_and_models();
+        let (_folder, models) = folder_and_models();
         assert_eq!(models.names().len(), 0);
         let model = training(4.0).run().expect("not stopped");
         let name = Name::new("set").expect("a name");
         let save = |existing| models.save(&model, &name, existing);
         models.check(&name, Existing::Kept).expect("free");
-        assert_eq!(
-            paths_in(folder.path()).expect("read").len(),
-            0,
-            "nothing is left"
-        );
         let path = save(Existing::Kept).expect("written");
         assert!(
             models
@@ -573,30 +544,12 @@ mod tests {
     }
 
     #[test]
-    fn a_model_beside_the_library_is_found_but_none_is_written_there() {
-        let (folder, models) = folder_and_models();
-        let earlier = folder.path().join("models");
-        fs::create_dir(&earlier).expect("made");
-        let model = training(4.0).run().expect("not stopped");
-        save_model(&model, &earlier.join("Set.npz"), Existing::Kept).expect("written");
-        let name = Name::new("set").expect("a name");
-        let found = models.find(&name).expect("it is there");
-        assert!(load_model(&found).is_ok() && models.check(&name, Existing::Kept).is_err());
-        let path = models
-            .save(&model, &name, Existing::Replaced)
-            .expect("written");
-        assert_eq!(path, folder.path().join("library/models/set.npz"));
-        assert_eq!(paths_in(&earlier).expect("read"), [earlier.join("Set.npz")]);
-        assert_eq!(models.find(&name), Some(path));
-    }
-
-    #[test]
     fn a_file_in_place_of_the_folder_is_reported() {
         let (folder, models) = folder_and_models();
         fs::create_dir(folder.path().join("library")).expect("made");
-        fs::write(&models.own, "").expect("written");
+        fs::write(&models.0, "").expect("written");
         let refused = models.list().expect_err("a file").to_string();
-        let expected = format!("{}: cannot read the folder: ", models.own.display());
+        let expected = format!("{}: cannot read the folder: ", models.0.display());
         assert!(refused.starts_with(&expected), "{refused}");
         let name = Name::new("set").expect("a name");
         assert!(models.check(&name, Existing::Kept).is_err());
@@ -716,20 +669,20 @@ mod tests {
     #[test]
     fn models_are_listed_by_alphabet_and_an_exact_name_comes_first() {
         let (_folder, models) = folder_and_models();
-        fs::create_dir_all(&models.own).expect("made");
+        fs::create_dir_all(&models.0).expect("made");
         for name in ["Bar", "apple", "cup", "CUP"] {
-            fs::write(models.own.join(format!("{name}.npz")), "").expect("written");
+            fs::write(models.0.join(format!("{name}.npz")), "").expect("written");
         }
         let names = models.names();
         // There is only one cup if the file system ignores case.
         let shown: Vec<&str> = names.iter().map(Name::as_str).take(2).collect();
         assert_eq!(shown, ["apple", "Bar"]);
         for name in names {
-            let file = models.own.join(format!("{name}.npz"));
+            let file = models.0.join(format!("{name}.npz"));
             assert_eq!(models.find(&name), Some(file));
         }
         let other_case = Name::new("BAR").expect("a name");
-        assert_eq!(models.find(&other_case), Some(models.own.join("Bar.npz")));
+        assert_eq!(models.find(&other_case), Some(models.0.join("Bar.npz")));
     }
 
     #[test]

@@ -26,7 +26,7 @@ fn folder() -> PathBuf {
     thread_local! {
         static SCRATCH: LazyCell<TempDir> = LazyCell::new(|| {
             let scratch = tempfile::tempdir().expect("a folder for temporary files");
-            std::fs::create_dir(scratch.path().join(MODELS)).expect("it is ours");
+            std::fs::create_dir_all(scratch.path().join(MODELS)).expect("it is ours");
             for (name, content) in FILES {
                 std::fs::write(scratch.path().join(name), content).expect("it is ours");
             }
@@ -36,8 +36,8 @@ fn folder() -> PathBuf {
     SCRATCH.with(|scratch| scratch.path().to_owned())
 }
 
-/// The folder of the models that can be used, beside the library.
-const MODELS: &str = "models";
+/// The folder of the models that can be used.
+const MODELS: &str = "library/models";
 
 /// A recording that can be watched, and a small model.
 const FILES: [(&str, &[u8]); 2] = [
@@ -45,18 +45,24 @@ const FILES: [(&str, &[u8]); 2] = [
         "touch.jsonl",
         include_bytes!("../seeds/recording/frames_jsonl"),
     ),
-    ("models/bar.npz", include_bytes!("../seeds/model/bar.npz")),
+    (
+        "library/models/bar.npz",
+        include_bytes!("../seeds/model/bar.npz"),
+    ),
 ];
 
 /// Makes an empty library in the scratch folder; other files are written below it. Files of the last input are
 /// removed.
 fn world() -> Jobs {
     let folder = folder();
-    let models = folder.join(MODELS);
-    for inside in [&folder, &models] {
-        for entry in std::fs::read_dir(inside).expect("it is ours") {
+    let is_kept = |path: &Path| {
+        let mut kept = FILES.iter().map(|(name, _)| folder.join(name));
+        kept.any(|file| file.starts_with(path))
+    };
+    for inside in ["", "library", MODELS] {
+        for entry in std::fs::read_dir(folder.join(inside)).expect("it is ours") {
             let path = entry.expect("it is ours").path();
-            if path != models && FILES.iter().all(|(name, _)| path != folder.join(name)) {
+            if !is_kept(&path) {
                 remove(&path).expect("it is ours");
             }
         }
