@@ -442,9 +442,8 @@ type Copied = (&'static str, Box<RawValue>);
 /// Reads the touches of a line, and what is copied. Other keys are ignored, so that answers of `taxel frames` can be
 /// given as they are.
 fn read_line(line: &[u8]) -> Result<(Vec<Imprint>, Vec<Copied>), ReadError> {
-    let without_nan = json::WithoutNan::new(line);
-    let keys: LineKeys = without_nan.object()?;
-    let line = &*without_nan.line;
+    let keys: LineKeys = json::of_line_with_nan(line)?;
+    let line = &*json::without_nan(line);
     // A frame is its values or its number.
     let (values, number) = match keys.frame {
         Some(frame) if frame.get().starts_with('[') => (Some(frame), None),

@@ -3,10 +3,8 @@
 use std::time::{Duration, Instant};
 
 use taxel_core::frame::Frame;
-use taxel_core::parameter::number::time_in_words;
 
 use crate::acquire::event::Playback;
-use crate::formats::recording::RecordingNote;
 use crate::formats::seconds::to_nanoseconds;
 
 /// The time between two ticks, and the longest wait until it is asked again whether more is wanted.
@@ -163,7 +161,6 @@ pub(super) struct Pace {
     last: Option<f64>,
     /// The seconds from the first to the last frame, with long pauses shortened.
     played: f64,
-    is_said: bool,
 }
 
 impl Pace {
@@ -178,7 +175,6 @@ impl Pace {
             step: STEP,
             last: None,
             played: 0.0,
-            is_said: false,
         }
     }
 
@@ -187,12 +183,12 @@ impl Pace {
         self.step = step;
     }
 
-    /// Takes the next frame. Returns a note about the first pause that is shortened.
-    pub(super) fn take(&mut self, frame: &Frame) -> Option<RecordingNote> {
+    /// Takes the next frame.
+    pub(super) fn take(&mut self, frame: &Frame) {
         let Some(last) = self.last else {
             // Times may count from another channel's first frame, or from the start of a longer recording.
             self.last = Some(frame.time.unwrap_or(0.0));
-            return None;
+            return;
         };
         let time = frame.time.unwrap_or(last + self.step);
         self.last = Some(time);
@@ -203,14 +199,6 @@ impl Pace {
             self.step = gap;
         }
         self.played += if is_long { PLAYED } else { gap };
-        let is_news = is_long && !std::mem::replace(&mut self.is_said, true);
-        is_news.then(|| {
-            RecordingNote::Oddity(format!(
-                "frame {} comes {} after the one before; this pause is played as {PLAYED} s at normal speed",
-                frame.number,
-                time_in_words(gap)
-            ))
-        })
     }
 
     /// Ends a round: the next one begins once the last frame has lasted as long as the one before it. Returns false if
@@ -318,35 +306,32 @@ mod tests {
         assert_eq!(clock.time(None, false, Instant::now()), None);
     }
 
-    /// The notes about frames at these times, and the seconds that are played at twice the speed.
-    fn paced(times: &[Option<f64>]) -> (Vec<String>, f64) {
+    /// The seconds that frames at these times are played at twice the speed.
+    fn played(times: &[Option<f64>]) -> f64 {
         let begun = Instant::now();
         let repeat = false;
         let mut pace = Pace::new(Playback::Paced { speed: 2.0, repeat }, begun);
         pace.set_step(4.0);
-        let (mut frame, mut notes) = (Frame::default(), Vec::new());
-        for (number, &time) in (0..).zip(times) {
-            (frame.number, frame.time) = (number, time);
-            notes.extend(pace.take(&frame).map(|note| note.to_string()));
+        for &time in times {
+            let mut frame = Frame::default();
+            frame.time = time;
+            pace.take(&frame);
         }
         let first = pace.left(begun).as_secs_f64();
         assert!(pace.left(begun + seconds(1)).as_secs_f64() <= first);
-        (notes, 2.0 * first)
+        2.0 * first
     }
 
     #[test]
     fn frames_are_due_by_their_times_and_a_long_pause_is_played_as_a_moment() {
-        let own = |times: &[f64]| times.iter().copied().map(Some).collect::<Vec<_>>();
-        let played = |times: &[Option<f64>]| paced(times).1;
+        let own = |times: &[f64]| played(&times.iter().copied().map(Some).collect::<Vec<_>>());
         // The first frame is due at once, even if its time is late.
-        assert_eq!(played(&own(&[1000.0])), 0.0);
-        assert_eq!(played(&own(&[1000.0, 1000.5])), 0.5);
+        assert_eq!(own(&[1000.0]), 0.0);
+        assert_eq!(own(&[1000.0, 1000.5]), 0.5);
         assert_eq!(played(&[None, None, None]), 8.0);
-        let (said, played) = paced(&own(&[0.0, 0.5, 1e9, 1e9 + 0.5, 3.0, 3.5, 300.0]));
-        let expected = "frame 2 comes 11,574 days after the one before; this pause is played as 2 s at normal speed";
-        assert_eq!((said, played), (vec![expected.to_owned()], 5.5));
-        assert_eq!(paced(&own(&[0.0, 59.0])), (Vec::new(), 59.0));
-        assert_eq!(paced(&own(&[0.0, f64::INFINITY])).1, 2.0);
+        assert_eq!(own(&[0.0, 0.5, 1e9, 1e9 + 0.5, 3.0, 3.5, 300.0]), 5.5);
+        assert_eq!(own(&[0.0, 59.0]), 59.0);
+        assert_eq!(own(&[0.0, f64::INFINITY]), 2.0);
     }
 
     #[test]

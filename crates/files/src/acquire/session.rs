@@ -260,10 +260,8 @@ impl<'a, 'b> Session<'a, 'b> {
                 self.failure = Some(unshaped(values, self.options.size));
                 return ControlFlow::Break(());
             }
-            if let Some(pace) = &mut self.pace
-                && let Some(note) = pace.take(frame)
-            {
-                self.report(AcquireEvent::Note(&note))?;
+            if let Some(pace) = &mut self.pace {
+                pace.take(frame);
             }
             self.wait_until_due()?;
         }

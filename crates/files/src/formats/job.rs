@@ -13,7 +13,7 @@ use taxel_core::source::Source;
 use taxel_core::touch::Plane;
 
 use crate::error::ReadError;
-use crate::formats::json::{self, WithoutNan};
+use crate::formats::json;
 use crate::formats::named_shape::ShapeLookup;
 use crate::formats::record::{ONE_KEY, Record};
 
@@ -108,7 +108,7 @@ impl Job {
 /// Only the values of a frame may be `NaN`: elsewhere, a missing value means something else than a wrong one.
 fn record(line: &[u8]) -> Result<Record, ReadError> {
     json::of_line(line).or_else(|error| {
-        let record: Record = WithoutNan::new(line).object()?;
+        let record: Record = json::of_line_with_nan(line)?;
         if record.frame.is_some() {
             Ok(record)
         } else {

@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 use std::io::{self, Write};
 
-use serde::de::Error;
+use serde::de::{DeserializeOwned, Error};
 use serde::ser::{SerializeMap, SerializeSeq, Serializer};
 use serde::{Deserialize, Serialize};
 use taxel_core::description::{DESCRIPTORS, Description, each_region};
@@ -70,61 +70,26 @@ impl serde_json::ser::Formatter for AsciiFormatter {
     }
 }
 
-/// A line in which each `NaN` is replaced by `null`: Python writes it, although JSON has no such number.
-#[derive(Debug)]
-pub struct WithoutNan<'a> {
-    /// The line, which is JSON as far as numbers are concerned.
-    pub line: Cow<'a, [u8]>,
-    /// The positions of the replaced words, which are longer now.
-    replaced: Vec<usize>,
-}
-
-impl<'a> WithoutNan<'a> {
-    /// Replaces the words.
-    pub fn new(line: &'a [u8]) -> Self {
-        let mut replaced = Vec::new();
-        if !line.windows(3).any(|word| word == b"NaN") {
-            let line = Cow::Borrowed(line);
-            return Self { line, replaced };
-        }
-        let mut own = Vec::with_capacity(line.len() + 64);
-        let (mut in_text, mut escaped) = (false, false);
-        let mut rest = line;
-        while let [byte, after @ ..] = rest {
-            if !in_text && let Some(after) = rest.strip_prefix(b"NaN") {
-                replaced.push(own.len());
-                own.extend_from_slice(b"null");
-                rest = after;
-                continue;
-            }
-            in_text ^= *byte == b'"' && !escaped;
-            escaped = in_text && *byte == b'\\' && !escaped;
-            own.push(*byte);
+/// A line with `null` for each `NaN`: Python writes it, although JSON has no such number.
+pub fn without_nan(line: &[u8]) -> Cow<'_, [u8]> {
+    if !line.windows(3).any(|word| word == b"NaN") {
+        return Cow::Borrowed(line);
+    }
+    let mut own = Vec::with_capacity(line.len() + 64);
+    let (mut in_text, mut escaped) = (false, false);
+    let mut rest = line;
+    while let [byte, after @ ..] = rest {
+        if !in_text && let Some(after) = rest.strip_prefix(b"NaN") {
+            own.extend_from_slice(b"null");
             rest = after;
+            continue;
         }
-        Self {
-            line: Cow::Owned(own),
-            replaced,
-        }
+        in_text ^= *byte == b'"' && !escaped;
+        escaped = in_text && *byte == b'\\' && !escaped;
+        own.push(*byte);
+        rest = after;
     }
-
-    /// Reads an object, as [`of_line`] does.
-    ///
-    /// # Errors
-    /// Returns the errors of [`of_line`], with the column of the original line.
-    pub fn object<'b, T: Deserialize<'b>>(&'b self) -> Result<T, ReadError> {
-        object(&self.line).map_err(|error| ReadError {
-            line: None,
-            column: Some(self.column(error.column()) as u64).filter(|column| *column > 0),
-            ..error.into()
-        })
-    }
-
-    /// Converts a column of this line to one of the original line, both from 1.
-    pub fn column(&self, column: usize) -> usize {
-        let before = self.replaced.iter().filter(|&&start| start + 4 < column);
-        column - before.count()
-    }
+    Cow::Owned(own)
 }
 
 /// Returns what is wrong with a JSON text, without the position, which callers report. Where a name is like one of those
@@ -169,6 +134,22 @@ pub fn of_line<'a, T: Deserialize<'a>>(line: &'a [u8]) -> Result<T, ReadError> {
     object(line).map_err(|error| ReadError {
         line: None,
         ..error.into()
+    })
+}
+
+/// Reads an object from a line that may have Python's `NaN`. An error in a line that has one names no column: it would
+/// be that of the changed line.
+///
+/// # Errors
+/// Those of [`of_line`].
+pub fn of_line_with_nan<T: DeserializeOwned>(line: &[u8]) -> Result<T, ReadError> {
+    let plain = without_nan(line);
+    of_line(&plain).map_err(|error| match plain {
+        Cow::Borrowed(_) => error,
+        Cow::Owned(_) => ReadError {
+            column: None,
+            ..error
+        },
     })
 }
 

@@ -6,27 +6,25 @@
 //! {"t": 0.05, "frame": [[5, 6], [7, 8]], "channel": "left"}
 //! ```
 //! A frame is a list of rows, or a list of cells if rows and columns are given by the caller. `t` or `time` is in
-//! seconds and counts from the first one; without either, another key with the name of a time counts, such as
-//! `timestamp` or `t_ms`. `label` is a whole number or a text, `channel` the name or the number of one of several
-//! sensors; other keys are ignored. All frames of a channel have the same size.
+//! seconds and counts from the first one. `label` is a whole number or a text, `channel` the name or the number of one of
+//! several sensors; other keys are ignored. All frames of a channel have the same size.
 
 use std::collections::BTreeMap;
 use std::io::BufRead;
 use std::slice;
 
 use serde::Deserialize;
-use serde_json::Value;
 use taxel_core::frame::{Frame, FrameSize, LARGEST_VALUE, Label};
 use taxel_core::parameter::number::counted;
 
 use crate::error::ReadError;
 use crate::formats::job::too_large;
-use crate::formats::json::WithoutNan;
+use crate::formats::json::of_line_with_nan;
 use crate::formats::recording::error::{foreign, unshaped};
 use crate::formats::recording::event::{ChannelInfo, LONGEST_NAME, ReadOptions, Sink, Stop};
 use crate::formats::recording::size::{changed, frame_size, other_than};
 use crate::formats::recording::text::TextLines;
-use crate::formats::recording::time::{FrameClock, Time, read_moment, time_name};
+use crate::formats::recording::time::Time;
 
 #[derive(Deserialize)]
 #[serde(expecting = "an object with a key \"frame\"")]
@@ -36,8 +34,6 @@ struct FrameLine {
     t: Option<f64>,
     label: Option<Name>,
     channel: Option<Name>,
-    #[serde(flatten)]
-    others: BTreeMap<String, Value>,
 }
 
 #[derive(Deserialize)]
@@ -95,11 +91,9 @@ pub(super) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), S
                 let channel = sink.channel(name.as_deref(), || ChannelInfo::of_size(size))?;
                 let before = *sizes.entry(channel).or_insert(size);
                 if before == size {
+                    let time = line.t.filter(|seconds| seconds.abs() <= LARGEST_VALUE);
                     let clock = &mut sink.state.clock;
-                    frame.time = line.time(clock).map(|time| clock.since_first(time));
-                    if let Some(note) = clock.take_note() {
-                        sink.note(&note)?;
-                    }
+                    frame.time = time.map(|time| clock.since_first(Time::Seconds(time)));
                     sink.frame(channel, &mut frame)?;
                     is_first = false;
                     continue;
@@ -127,7 +121,7 @@ fn is_meant(line: &[u8]) -> bool {
 impl FrameLine {
     /// Reads a line; its size, its values and its label are those of `frame` then.
     fn read(line: &[u8], options: &ReadOptions, frame: &mut Frame) -> Result<Self, ReadError> {
-        let line: Self = WithoutNan::new(line).object()?;
+        let line: Self = of_line_with_nan(line)?;
         if let Some(Name::Text(name)) = &line.channel
             && !(1..=LONGEST_NAME).contains(&name.len())
         {
@@ -184,28 +178,6 @@ impl FrameLine {
             }
         };
         Err(ReadError::new(message))
-    }
-
-    /// The time of the frame, if it has one.
-    fn time(&self, clock: &mut FrameClock) -> Option<Time> {
-        if let Some(seconds) = self.t {
-            return Some(Time::Seconds(seconds)).filter(|_| seconds.abs() <= LARGEST_VALUE);
-        }
-        let mut others = self.others.iter();
-        let (unit, value) = others.find_map(|(name, value)| Some((time_name(name)?, value)))?;
-        if unit.is_some() {
-            clock.unit = unit;
-        }
-        match value {
-            Value::Number(number) => {
-                let value = number
-                    .as_f64()
-                    .filter(|value| value.abs() <= LARGEST_VALUE)?;
-                Some(clock.number(number.to_string().as_bytes(), value))
-            }
-            Value::String(text) => Some(clock.moment(read_moment(text.as_bytes())?)),
-            _ => None,
-        }
     }
 }
 

@@ -278,33 +278,11 @@ pub(super) fn is_none(field: &[u8]) -> bool {
     }
 }
 
-/// Returns true if a line is skipped wherever it is: a comment, or the line in which spreadsheet programs name the
-/// separator, `sep=;`. A comment begins with `#`; `#N/A` is a cell.
+/// Whether a line is a comment. It begins with `#`; `#N/A` is a cell.
 pub(crate) fn is_comment(line: &[u8]) -> bool {
-    let line = line.trim_ascii();
-    match line {
-        [b'#', ..] => !line
-            .get(..4)
-            .is_some_and(|start| start.eq_ignore_ascii_case(b"#n/a")),
-        [b's' | b'S' | b'"', ..] => named_separator(line).is_some(),
-        _ => false,
-    }
-}
-
-/// Returns the separator that a line `sep=;` names, as spreadsheet programs write it, also in quotes, or with the
-/// separators of empty fields behind it. None for any other line.
-fn named_separator(line: &[u8]) -> Option<u8> {
-    let line = line.trim_ascii();
-    let quoted = line.strip_prefix(b"\"").unwrap_or(line);
-    let (key, marks) = quoted.split_at_checked(4)?;
-    if !key.eq_ignore_ascii_case(b"sep=") {
-        return None;
-    }
-    let marks = marks.strip_suffix(b"\"").unwrap_or(marks);
-    // A tab at the end of the line was trimmed as a blank.
-    let mark = marks.first().copied().unwrap_or(b'\t');
-    let is_usual = matches!(mark, b',' | b';' | b'\t' | b'|');
-    (is_usual && marks.iter().all(|&byte| byte == mark)).then_some(mark)
+    let line = line.trim_ascii_start();
+    let is_cell = |start: &[u8]| start.eq_ignore_ascii_case(b"#n/a");
+    line.starts_with(b"#") && !line.get(..4).is_some_and(is_cell)
 }
 
 pub(crate) fn unquoted(field: &[u8]) -> &[u8] {

@@ -19,9 +19,9 @@
 //! ```
 //! Versions of the software differ in how they write a key (`FRAME`, `Frame:`), in quotes around fields, and in units
 //! (`Sensel Width (mm)`); a comma within a field may be the decimal sign. The time of a frame is the difference
-//! between clock times, or between times in seconds. Dates that begin with the year count; with any other, a clock that
-//! falls by more than half a day has passed midnight. `Threshold` is the least value that XSENSOR's own software counts
-//! as touched, so it is the threshold of the recording. Averages and areas are ignored: they follow from the values.
+//! between clock times, or between times in seconds; a clock that falls by more than half a day has passed midnight.
+//! `Threshold` is the least value that XSENSOR's own software counts as touched, so it is the threshold of the
+//! recording. Averages and areas are ignored: they follow from the values.
 //! Source: an export of XSENSOR's software of 2022.
 
 use std::io::BufRead;
@@ -227,48 +227,7 @@ impl XsensorState {
         if let Some(seconds) = read_number(clock.as_bytes()) {
             return Some(self.times.since_first(Time::Seconds(seconds)));
         }
-        let clock = of_day(clock)?;
-        let date = self.date.as_ref().and_then(|date| iso_date(date));
-        let dated = date.map(|date| format!("{date} {clock}"));
-        let moment = read_moment(dated.as_ref().unwrap_or(&clock).as_bytes())?;
-        let time = self.times.moment(moment);
+        let time = self.times.moment(read_moment(clock.as_bytes())?);
         Some(self.times.since_first(time))
     }
-}
-
-/// The time of day on a clock that may end in `AM` or `PM`.
-fn of_day(clock: &str) -> Option<String> {
-    let clock = clock.to_ascii_uppercase();
-    let halves = [
-        (clock.strip_suffix("AM"), 0),
-        (clock.strip_suffix("PM"), 12),
-    ];
-    let half = halves
-        .into_iter()
-        .find_map(|(clock, begun)| Some((clock?, begun)));
-    let Some((shown, begun)) = half else {
-        return Some(clock);
-    };
-    let (hours, rest) = shown.trim().split_once(':')?;
-    let hours: u8 = hours
-        .parse()
-        .ok()
-        .filter(|hours| (1..=12).contains(hours))?;
-    Some(format!("{}:{rest}", hours % 12 + begun))
-}
-
-/// The date `2022-08-16` of one such as `2022 Aug 16`.
-fn iso_date(date: &str) -> Option<String> {
-    const MONTHS: [&str; 12] = [
-        "JAN", "FEB", "MAR", "APR", "MAY", "JUN", "JUL", "AUG", "SEP", "OCT", "NOV", "DEC",
-    ];
-    let words = date.split(|sign: char| !sign.is_alphanumeric());
-    let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
-    let [year, month, day] = words[..] else {
-        return None;
-    };
-    let name = month.to_ascii_uppercase();
-    let named = (1..).zip(MONTHS).find(|(_, start)| name.starts_with(start));
-    let month = named.map_or_else(|| month.to_owned(), |(month, _)| month.to_string());
-    (year.len() == 4).then(|| format!("{year}-{month}-{day}"))
 }
