@@ -29,8 +29,6 @@ mod watch;
 
 mod watch_files;
 
-mod sensors;
-
 mod batch;
 
 mod library;

@@ -8,7 +8,7 @@ mod examples;
 #[path = "../common/mod.rs"]
 mod common;
 
-#[path = "../common/commands.rs"]
-mod commands;
+#[path = "../common/skip.rs"]
+mod skip;
 
 mod docs;

@@ -1,142 +1,160 @@
-//! The output of the command line, and the commands that the documents show.
+//! The commands that the documents show.
+//!
+//! A `console` block is run in a folder of its page that holds the samples of the guide. `$` begins a line for the
+//! shell and `>` continues it. What the lines print follows them; a block may also leave all of it out. A `python`
+//! block is run there, too, if Python has the modules that it imports. In an `sh` block is what no test can run, such
+//! as a sensor on a serial line: it is only asked whether `taxel` takes the flags.
 
-use std::collections::BTreeMap;
-use std::path::Path;
-use std::process::Command;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
 use std::sync::LazyLock;
 
-use crate::commands::commands;
-use crate::docs::documents;
+use crate::docs::{document, documents, root};
+use crate::skip::skipped;
 
-const TAXEL: &str = env!("CARGO_BIN_EXE_taxel");
+/// A folder that belongs to this build, with a folder for each page.
+const FOLDERS: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/docs");
 
-/// Every command, in the order of `taxel help`.
-static COMMANDS: LazyLock<Vec<String>> =
-    LazyLock::new(|| commands(&|name| shell(&format!("taxel {name} --help"))));
+/// The samples, made by the lines that the guide shows for them.
+static SAMPLES: LazyLock<PathBuf> = LazyLock::new(|| {
+    let folder = Path::new(FOLDERS);
+    // It may be left from an earlier run.
+    fs::remove_dir_all(folder).ok();
+    fs::create_dir_all(folder).expect("a folder can be made");
+    let guide = document("docs/README.md");
+    let lines = blocks(&guide, "sh").find(|lines| lines.contains("CLONE"));
+    let clone = root().to_str().expect("a path in UTF-8");
+    let lines = lines.expect("the samples").replace("CLONE", clone);
+    succeeded(folder, &format!("set -e\n{lines}"));
+    folder.join("samples")
+});
 
-fn is_command(name: &str) -> bool {
-    COMMANDS.iter().any(|command| command == name)
+/// Returns the blocks of code in a language.
+fn blocks<'a>(text: &'a str, language: &'a str) -> impl Iterator<Item = &'a str> {
+    let codes = text.split("```").skip(1).step_by(2);
+    codes.filter_map(move |code| code.strip_prefix(language)?.strip_prefix('\n'))
 }
 
-/// Returns the output of a shell line, with this build's `taxel` first on the path and the program's default settings.
-fn shell(line: &str) -> String {
-    shell_in(Path::new(env!("CARGO_MANIFEST_DIR")), line)
-}
-
-/// Like [`shell`], in a given folder.
-pub(crate) fn shell_in(current: &Path, line: &str) -> String {
-    let folder = Path::new(TAXEL)
-        .parent()
-        .expect("the program is in a folder");
+/// Runs lines in a shell, with this build's `taxel` first on the path, and without the user's settings and library.
+fn shell(folder: &Path, lines: &str) -> Output {
+    let taxel = Path::new(env!("CARGO_BIN_EXE_taxel"));
+    let taxel = taxel.parent().expect("it is in a folder").to_owned();
     let path = std::env::var_os("PATH").unwrap_or_default();
-    let path = std::iter::once(folder.to_owned()).chain(std::env::split_paths(&path));
-    let output = Command::new("sh")
-        .args(["-c", line])
-        .current_dir(current)
+    let path = std::iter::once(taxel).chain(std::env::split_paths(&path));
+    Command::new("sh")
+        .args(["-c", lines])
+        .current_dir(folder)
         .env("PATH", std::env::join_paths(path).expect("a path"))
         .env("TAXEL_CONFIG", "/dev/null")
+        .env("TAXEL_LIBRARY", folder.join("library"))
+        .env("XDG_CACHE_HOME", Path::new(FOLDERS).join("cache"))
         .env("LC_ALL", "C.UTF-8")
         .output()
-        .expect("there is a shell");
-    assert!(
-        output.status.success(),
-        "{line}: {}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+        .expect("there is a shell")
+}
+
+/// Returns what lines print that must succeed.
+fn succeeded(folder: &Path, lines: &str) -> String {
+    let output = shell(folder, lines);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{lines}: {said}");
     String::from_utf8(output.stdout).expect("the output is text")
 }
 
-/// The result in the README: a command and its output.
-pub(crate) fn result() -> String {
-    let line = "taxel sweep rectangle --length 6 --width 3 --quiet | grep -E 'imprints|mean|^na |^p |^side_ratio'";
-    format!("\n```text\n$ {line}\n{}```\n\n", shell(line))
-}
-
-/// The worked example of the page about sweeps.
-pub(crate) fn study() -> String {
-    let line = "for width in 3 3.2 4; do taxel sweep rectangle --length 6 --width $width --quiet | grep '^na '; done";
-    format!("\n```text\n$ {line}\n{}```\n\n", shell(line))
-}
-
-/// The help texts.
-pub(crate) fn help() -> String {
-    COMMANDS
-        .iter()
-        .map(|name| {
-            let line = format!("taxel {name}").trim_end().to_owned();
-            format!(
-                "\n### {line}\n\n```text\n{}```\n",
-                shell(&format!("{line} --help"))
-            )
-        })
-        .collect::<String>()
-        + "\n"
-}
-
-/// Returns the shell lines of a document that call `taxel`; continuation lines are joined.
-fn calls(text: &str) -> Vec<String> {
-    let mut calls = Vec::new();
-    for (index, fence) in text.split("```").enumerate() {
-        let Some(code) = fence.strip_prefix("sh\n").filter(|_| index % 2 == 1) else {
-            continue;
-        };
-        let code = code.replace("\\\n", " ");
-        calls.extend(
-            code.lines()
-                .filter(|line| line.starts_with("taxel "))
-                .map(str::to_owned),
-        );
+/// Runs the blocks of a page in their order. Returns the page with their present output, and its folder.
+pub(crate) fn run(page: &Path, text: &str) -> (String, PathBuf) {
+    let folder = Path::new(FOLDERS).join(page.to_string_lossy().replace('/', "-"));
+    let mut parts: Vec<String> = text.split("```").map(str::to_owned).collect();
+    for code in parts.iter_mut().skip(1).step_by(2) {
+        match code.split_once('\n') {
+            Some(("console", lines)) => {
+                *code = format!("console\n{}", console(furnished(&folder), lines))
+            }
+            Some(("python", program)) => python(furnished(&folder), program),
+            _ => {}
+        }
     }
-    calls
+    (parts.join("```"), folder)
 }
 
-fn is_of_flag(character: char) -> bool {
-    character.is_ascii_alphanumeric() || character == '-'
+/// Puts the samples into a folder, unless it is there already.
+fn furnished(folder: &Path) -> &Path {
+    let samples = SAMPLES.display();
+    if !folder.exists() {
+        let lines = format!("cp -r '{samples}' '{}'", folder.display());
+        succeeded(root(), &lines);
+    }
+    folder
 }
 
-/// Readers copy these lines, so each must name a command of the program and flags of this command.
+/// Returns the block with the output of each line, if it shows any.
+fn console(folder: &Path, block: &str) -> String {
+    let is_typed = |line: &str| line.starts_with("$ ") || line.starts_with("> ");
+    let shows = !block.lines().all(is_typed);
+    let mut lines = block.lines().filter(|line| is_typed(line)).peekable();
+    let mut text = String::new();
+    while let Some(first) = lines.next() {
+        let mut typed = vec![first];
+        while let Some(more) = lines.next_if(|line| line.starts_with("> ")) {
+            typed.push(more);
+        }
+        let command: Vec<&str> = typed.iter().map(|line| &line[2..]).collect();
+        let printed = succeeded(folder, &command.join("\n"));
+        let printed = printed.lines().filter(|_| shows);
+        for line in typed.into_iter().chain(printed) {
+            text += line.trim_end();
+            text.push('\n');
+        }
+    }
+    text
+}
+
+/// Runs a program if Python has its modules; otherwise its grammar is checked.
+fn python(folder: &Path, program: &str) {
+    let imports = program.lines().filter(|line| line.starts_with("import "));
+    let imports = imports.collect::<Vec<_>>().join("\n");
+    let python = |arguments: &[&str]| {
+        let mut python = Command::new("python3");
+        let output = python.args(arguments).current_dir(folder).output();
+        let output = output.map_err(|error| error.to_string())?;
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        output.status.success().then_some(()).ok_or(said)
+    };
+    let Err(lacks) = python(&["-c", &imports]) else {
+        return python(&["-c", program]).unwrap_or_else(|said| panic!("{program}\n{said}"));
+    };
+    let lacks = lacks.trim_end().lines().last().unwrap_or_default();
+    skipped(&format!("a program of the documents is not run: {lacks}"));
+    if python(&["-c", ""]).is_ok() {
+        let read = "import ast, sys; ast.parse(sys.argv[1])";
+        python(&["-c", read, program]).unwrap_or_else(|said| panic!("{program}\n{said}"));
+    }
+}
+
+/// Readers copy the lines that cannot be run here, too. With `--help` at its end, `taxel` refuses the flags before it
+/// that it does not have, and values that they cannot take.
 #[test]
-fn every_command_shown_exists_with_its_flags() {
-    let mut helps = BTreeMap::new();
+fn every_command_that_is_not_run_exists_with_its_flags() {
     let mut checked = 0;
-    for (path, text) in documents() {
-        for call in calls(&text) {
-            let call = call.split(" #").next().expect("a line");
-            let call = call.split(['|', '<', '>', ';']).next().expect("a command");
-            let mut words = call.split_whitespace().skip(1).peekable();
-            let mut name = words
-                .next_if(|word| !word.starts_with('-'))
-                .unwrap_or_default()
-                .to_owned();
-            // A subcommand has its own help.
-            let longer = words.peek().map(|word| format!("{name} {word}"));
-            if let Some(longer) = longer.filter(|longer| is_command(longer)) {
-                words.next();
-                name = longer;
+    for (page, text) in documents() {
+        for block in blocks(&text, "sh") {
+            // A part of a line ends at a pipe, a file or a comment.
+            let mut parts = block.replace("\\\n", " ");
+            for end in [" | ", " > ", " < ", " #", "; "] {
+                parts = parts.replace(end, "\n");
             }
-            let name = name.as_str();
-            if name == "help" {
-                continue;
-            }
-            assert!(
-                is_command(name),
-                "{}: no command {name:?}: {call}",
-                path.display()
-            );
-            let help: &String = helps
-                .entry(name.to_owned())
-                .or_insert_with(|| shell(&format!("taxel {name} --help")));
-            for flag in words.filter(|word| word.starts_with("--")) {
-                let flag = flag.split('=').next().expect("a flag");
-                let mut known = help.split(|character: char| !is_of_flag(character));
-                assert!(
-                    known.any(|word| word == flag),
-                    "{}: taxel {name} has no {flag}",
-                    path.display()
-                );
+            for call in parts.lines().filter(|part| part.starts_with("taxel ")) {
+                let output = shell(root(), &format!("{call} --help"));
+                let said = String::from_utf8_lossy(&output.stderr);
+                let page = page.display();
+                assert!(output.status.success(), "{page}: {call}: {said}");
                 checked += 1;
             }
         }
     }
-    assert!(checked >= 20, "{checked} flags were found in the documents");
+    assert!(
+        checked >= 20,
+        "{checked} commands were found in the documents"
+    );
 }

@@ -5,14 +5,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 mod commands;
 mod glossary;
 mod links;
-mod parts;
-mod recognition;
 mod screen;
 mod tables;
 
@@ -24,26 +22,13 @@ type Block = (&'static str, fn() -> String);
 
 /// The generated parts of all documents, except those of the glossary, which are in [`glossary::BLOCKS`].
 const BLOCKS: &[Block] = &[
-    ("result", commands::result),
     ("tour", screen::tour),
     ("first-steps", screen::first_steps),
     ("keys", tables::keys),
     ("prompt", tables::prompt),
     ("descriptors", tables::descriptors),
     ("parameters", tables::parameters),
-    ("command-line", commands::help),
     ("positions", positions),
-    ("study", commands::study),
-    ("recognition-set", recognition::set),
-    ("recognition-train", recognition::train),
-    ("recognition-confusion", recognition::confusion),
-    ("recognition-worth", recognition::worth),
-    ("recognition-peers", recognition::peers),
-    ("parts-touch", parts::touch),
-    ("parts-pitch", parts::separate),
-    ("parts-train", parts::train),
-    ("parts-confusion", parts::confusion),
-    ("parts-recognise", parts::recognise),
 ];
 
 /// The paper's experiment with positions.
@@ -56,36 +41,40 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
+/// Returns the files of `docs` with this extension.
+fn in_docs(extension: &str) -> Vec<PathBuf> {
+    let entries = fs::read_dir(root().join("docs")).expect("the folder docs is there");
+    let names = entries.map(|entry| entry.expect("docs can be listed").file_name());
+    let paths = names.map(|name| Path::new("docs").join(name));
+    paths
+        .filter(|path| path.extension().is_some_and(|found| found == extension))
+        .collect()
+}
+
 /// Returns the path of every document, from the root, and its text.
 fn documents() -> Vec<(PathBuf, String)> {
-    let mut paths = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md"]
-        .map(PathBuf::from)
-        .to_vec();
-    for entry in fs::read_dir(root().join("docs")).expect("the folder docs is there") {
-        let name = entry.expect("docs can be listed").file_name();
-        if Path::new(&name)
-            .extension()
-            .is_some_and(|extension| extension == "md")
-        {
-            paths.push(Path::new("docs").join(name));
-        }
-    }
-    for folder in ["examples/cluster", "examples/python"] {
-        paths.push(Path::new(folder).join("README.md"));
-    }
-    // The package does not contain the fuzz targets.
-    if root().join("fuzz/README.md").exists() {
-        paths.push(PathBuf::from("fuzz/README.md"));
-    }
+    let others = [
+        "README.md",
+        "CONTRIBUTING.md",
+        "CHANGELOG.md",
+        "examples/cluster/README.md",
+        "examples/python/README.md",
+        // The package does not contain the fuzz targets.
+        "fuzz/README.md",
+    ];
+    let mut paths = in_docs("md");
+    paths.extend(
+        others
+            .map(PathBuf::from)
+            .into_iter()
+            .filter(|path| root().join(path).exists()),
+    );
     paths.sort();
-    let text = |path: &PathBuf| {
-        fs::read_to_string(root().join(path))
-            .unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    let page = |path: PathBuf| {
+        let text = document(&path.to_string_lossy());
+        (path, text)
     };
-    paths
-        .iter()
-        .map(|path| (path.clone(), text(path)))
-        .collect()
+    paths.into_iter().map(page).collect()
 }
 
 /// Returns the text of one document.
@@ -116,23 +105,6 @@ fn hold(path: &Path, wanted: &str) {
     );
 }
 
-/// Makes all blocks and returns them by name. Blocks run commands, and some take much longer than others, so two
-/// threads each take the next block that is left.
-fn made(blocks: &[Block]) -> BTreeMap<&'static str, String> {
-    let next = AtomicUsize::new(0);
-    let some = || {
-        let left = || blocks.get(next.fetch_add(1, Ordering::Relaxed));
-        let made = std::iter::from_fn(left).map(|(name, make)| (*name, make()));
-        made.collect::<Vec<_>>()
-    };
-    std::thread::scope(|scope| {
-        let others = scope.spawn(some);
-        let own = some();
-        let others = others.join().expect("the others are made, too");
-        own.into_iter().chain(others).collect()
-    })
-}
-
 /// Returns a document with its blocks brought up to date; adds the names of these blocks to `found`.
 fn refreshed(
     path: &Path,
@@ -161,21 +133,42 @@ fn refreshed(
     wanted
 }
 
+/// Blocks and commands are made anew. A picture that a command of a page draws is that of the same name in `docs`.
 #[test]
 fn every_generated_part_is_up_to_date() {
-    let blocks = made(&[BLOCKS, glossary::BLOCKS].concat());
+    let made: BTreeMap<_, _> = [BLOCKS, glossary::BLOCKS]
+        .concat()
+        .into_iter()
+        .map(|(name, make)| (name, make()))
+        .collect();
     let mut found = Vec::new();
-    for (path, text) in documents() {
-        let wanted = refreshed(&path, &text, &blocks, &mut found);
-        hold(&path, &wanted);
-    }
+    std::thread::scope(|scope| {
+        let pages = documents().into_iter().map(|(path, text)| {
+            let text = refreshed(&path, &text, &made, &mut found);
+            scope.spawn(move || {
+                let (text, folder) = commands::run(&path, &text);
+                (path, text, folder)
+            })
+        });
+        for page in pages.collect::<Vec<_>>() {
+            let (path, wanted, folder) = page.join().unwrap_or_else(|panic| resume_unwind(panic));
+            hold(&path, &wanted);
+            for picture in in_docs("svg") {
+                if let Ok(drawn) =
+                    fs::read_to_string(folder.join(picture.file_name().expect("a name")))
+                {
+                    hold(&picture, &drawn);
+                }
+            }
+        }
+    });
     let once: BTreeSet<_> = found.iter().map(String::as_str).collect();
     assert_eq!(
         once.len(),
         found.len(),
         "a block is in two places: {found:?}"
     );
-    for name in blocks.keys() {
+    for name in made.keys() {
         assert!(once.contains(name), "no document has the block {name:?}");
     }
 }
@@ -183,16 +176,10 @@ fn every_generated_part_is_up_to_date() {
 #[test]
 fn every_picture_is_drawn_by_the_program() {
     hold(Path::new("docs/screen.svg"), &screen::svg());
-    for (name, drawn) in [
-        screen::explore_svgs(),
-        screen::first_steps_svgs(),
-        parts::svgs(),
-    ]
-    .concat()
-    {
+    let screens = [screen::explore_svgs(), screen::first_steps_svgs()].concat();
+    for (name, drawn) in screens {
         hold(&Path::new("docs").join(name).with_extension("svg"), &drawn);
     }
-    hold(Path::new("docs/touch.svg"), &screen::touch_svg());
     hold(
         Path::new("docs/recognition.svg"),
         &crate::examples::fits::report(),

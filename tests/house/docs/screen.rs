@@ -1,6 +1,5 @@
 //! Screens of the program, as text and as drawings, and the tour through the program.
 
-use std::fs;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
@@ -9,9 +8,6 @@ use taxel::tui::jobs::Jobs;
 use taxel::tui::keys::{Key, Keymap, parse};
 use taxel::tui::script::runner::{ScriptOptions, Shown, run};
 use taxel::tui::widget::{ColorDepth, Palette, Theme};
-
-use crate::docs::commands::shell_in;
-use crate::docs::document;
 
 /// `tests/screen/scripts.rs` runs these scripts, too.
 const FIGURE: &str = include_str!("../../scripts/paper_figure.taxel");
@@ -79,16 +75,6 @@ Screen explore-letters
         format!("taxel: Explore, the {page} of a rectangle")
     };
     screens(SCRIPT, title)
-}
-
-/// The touch that the screen shows in millimetres, drawn by the command on the page about files.
-pub(crate) fn touch_svg() -> String {
-    let page = document("docs/files.md");
-    let ends = " --export touch.svg";
-    let line = page.lines().find(|line| line.ends_with(ends));
-    let folder = tempfile::tempdir().expect("a folder can be made");
-    shell_in(folder.path(), line.expect("a command"));
-    fs::read_to_string(folder.path().join("touch.svg")).expect("written")
 }
 
 /// The tour as numbered steps. In the script, a comment describes each step; the lines after it give the keys.
