@@ -7,10 +7,10 @@ use taxel_core::prelude::*;
 use taxel_core::progress::ToTheEnd;
 use taxel_core::recognition::{
     AnswerState, Classifier, ClassifierSettings, Evaluation, Evidence, GivenDescriptors,
-    ImprintKey, KeyTable, Model, ModelError, ModelHead, ModelMerge, NamedShape, Noise, Rounding,
-    ShapeCount, ShapeDescriptor, Training, TrainingError,
+    ImprintKey, KeyTable, Model, ModelHead, ModelMerge, NamedShape, Noise, Rounding, ShapeCount,
+    ShapeDescriptor, Training, TrainingError,
 };
-use taxel_core::sweep::{Shard, ShardOrderError};
+use taxel_core::sweep::{MergeError, Shard};
 
 use crate::common::size;
 
@@ -239,7 +239,7 @@ fn counts_equal_those_of_touching_pose_by_pose() {
 }
 
 /// Merges shards in the given order.
-fn merge_all(shards: &[Model]) -> Result<Model, ModelError> {
+fn merge_all(shards: &[Model]) -> Result<Model, MergeError> {
     let mut merge = ModelMerge::default();
     for shard in shards {
         merge.add(shard)?;
@@ -277,15 +277,14 @@ fn merged_shards_equal_the_whole_model() {
     );
     // A shard that is refused changes nothing, even if it comes first.
     let mut merge = ModelMerge::default();
-    let shard = |number| Shard::new(number, 3).expect("a shard");
-    let missing = |number| Err(ShardOrderError::Missing { number, of: 3 }.into());
-    assert_eq!(merge.add(&part(2)), missing(1));
-    assert_eq!(merge.add(&part(1)), Ok(()));
-    assert_eq!(merge.add(&part(3)), missing(2));
-    assert_eq!(merge.add(&part(2)), Ok(()));
-    let twice = Err(ShardOrderError::Twice(shard(2)).into());
-    assert_eq!(merge.add(&part(2)), twice);
-    assert_eq!(merge.add(&part(3)), Ok(()));
+    let mut add = |number| merge.add(&part(number)).map_err(|error| error.to_string());
+    let error = |text: &str| Err(text.to_owned());
+    assert_eq!(add(2), error("shard 1/3 is missing"));
+    assert_eq!(add(1), Ok(()));
+    assert_eq!(add(3), error("shard 2/3 is missing"));
+    assert_eq!(add(2), Ok(()));
+    assert_eq!(add(2), error("shard 2/3 is given twice"));
+    assert_eq!(add(3), Ok(()));
     let merged = merge.finish().expect("all three");
     assert_eq!((merged.poses(), merged.cut()), (whole.poses(), whole.cut()));
     assert_eq!(Evaluation::of(&merged), Evaluation::of(&whole));

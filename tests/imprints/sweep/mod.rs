@@ -18,7 +18,7 @@ use taxel_core::pose::{Anchor, Axis, PoseGrid, Ranges};
 use taxel_core::progress::stop_if;
 use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
-use taxel_core::sweep::{MergeError, Shard, ShardOrderError, Sweep, SweepMerge, SweepResult};
+use taxel_core::sweep::{MergeError, Shard, Sweep, SweepMerge, SweepResult};
 
 use self::cases::{cases, differences, figure, picture};
 use crate::paper::RING_IMPRINTS;
@@ -221,20 +221,19 @@ fn shards_are_merged_only_if_all_are_there() {
             .with_shard(Shard::new(number, of).expect("a shard"))
             .run()
     };
-    let merge = |results: Vec<SweepResult>| merge_all(results).map(|result| result.poses);
-    assert_eq!(merge(vec![]), Err(ShardOrderError::Nothing.into()));
+    let merge = |results: Vec<SweepResult>| {
+        let merged = merge_all(results).map(|result| result.poses);
+        merged.map_err(|error| error.to_string())
+    };
+    let refused = |results: Vec<SweepResult>| merge(results).expect_err("no whole");
+    assert_eq!(refused(vec![]), "no shards to merge");
     assert_eq!(
-        merge(vec![shard(&grid, 1, 3), shard(&grid, 2, 3)]),
-        Err(ShardOrderError::Missing { number: 3, of: 3 }.into())
+        refused(vec![shard(&grid, 1, 3), shard(&grid, 2, 3)]),
+        "shard 3/3 is missing"
     );
     assert_eq!(
-        merge(vec![shard(&grid, 1, 3), shard(&grid, 3, 3)]),
-        Err(ShardOrderError::Missing { number: 2, of: 3 }.into())
-    );
-    let twice = Shard::new(1, 2).expect("a shard");
-    assert_eq!(
-        merge(vec![shard(&grid, 1, 2), shard(&grid, 1, 2)]),
-        Err(ShardOrderError::Twice(twice).into())
+        refused(vec![shard(&grid, 1, 3), shard(&grid, 3, 3)]),
+        "shard 2/3 is missing"
     );
     // The original place of the shape does not matter.
     let moved = figure(FigureKind::Triangle, 6.0, 0.0, 0.0)
@@ -250,31 +249,18 @@ fn shards_are_merged_only_if_all_are_there() {
         "5:5.9:0.1",
         "0:40:10",
     );
-    let foreign = Shard::new(2, 2).expect("a shard");
-    assert_eq!(
-        merge(vec![shard(&grid, 1, 2), shard(&other, 2, 2)]),
-        Err(MergeError::Foreign {
-            shard: foreign,
-            difference: "its shape"
-        })
-    );
     // A shard that is refused changes nothing, even if it comes first.
     let mut refused = SweepMerge::default();
-    let missing = |number, of| Err(ShardOrderError::Missing { number, of }.into());
-    assert_eq!(refused.add(shard(&other, 2, 3)), missing(1, 3));
-    assert_eq!(refused.add(shard(&grid, 1, 2)), Ok(()));
+    let mut add = |part| refused.add(part).map_err(|error| error.to_string());
+    let error = |text: &str| Err(text.to_owned());
+    assert_eq!(add(shard(&other, 2, 3)), error("shard 1/3 is missing"));
+    assert_eq!(add(shard(&grid, 1, 2)), Ok(()));
     assert_eq!(
-        refused.add(shard(&other, 2, 2)),
-        Err(MergeError::Foreign {
-            shard: foreign,
-            difference: "its shape"
-        })
+        add(shard(&other, 2, 2)),
+        error("shard 2/2 differs from the first one in its shape")
     );
-    assert_eq!(
-        refused.add(shard(&grid, 1, 2)),
-        Err(ShardOrderError::Twice(twice).into())
-    );
-    assert_eq!(refused.add(shard(&grid, 2, 2)), Ok(()));
+    assert_eq!(add(shard(&grid, 1, 2)), error("shard 1/2 is given twice"));
+    assert_eq!(add(shard(&grid, 2, 2)), Ok(()));
     let merged = refused.finish().map(|result| told(&result));
     assert_eq!(merged, Ok(told(&sweep(&grid))));
 }
@@ -304,8 +290,11 @@ fn a_stopped_sweep_keeps_what_is_complete() {
         result.poses
     );
     assert!(result.statistics[0].poses == result.poses && result.statistics[0].sd_angle.is_some());
-    let incomplete = MergeError::Incomplete(Shard::WHOLE);
-    assert_eq!(merge_all([result]).err(), Some(incomplete));
+    let refused = merge_all([result]).expect_err("incomplete");
+    assert_eq!(
+        refused.to_string(),
+        "shard 1/1 was stopped early, run it again"
+    );
     // The sweep does not even wait for the end of an orientation.
     let result = stopped_after(1);
     assert_eq!((result.poses, result.atlas.len()), (0, 0));

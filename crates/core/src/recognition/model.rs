@@ -13,7 +13,7 @@ use crate::recognition::scan::KeyIndex;
 use crate::recognition::training::{CellPositions, GridSteps, Training};
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::sweep::{Shard, ShardOrderError};
+use crate::sweep::{MergeError, Shard};
 
 /// A shape and the name that answers use for it.
 #[derive(Clone, Debug, PartialEq)]
@@ -163,35 +163,20 @@ pub(super) const MAX_SHAPES: usize = 1 << 15;
 
 const LONGEST_NAME: usize = 64;
 
-/// The error for shapes or numbers that do not make a model.
+/// The error for shapes or numbers that do not make a model; the message says what is wrong.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ModelError {
-    /// An invalid set, or numbers that contradict each other; the message says what is wrong.
-    #[error("{0}")]
-    Invalid(Cow<'static, str>),
-    /// Shards to merge that are missing, or given twice.
-    #[error(transparent)]
-    Shards(#[from] ShardOrderError),
-    /// Models that are not parts of one training.
-    #[error("shard {shard} belongs to another training")]
-    Foreign {
-        /// The shard that does not fit the first one.
-        shard: Shard,
-    },
-}
+#[error("{0}")]
+pub struct ModelError(Cow<'static, str>);
 
 impl ModelError {
-    /// The error for two equal keys.
-    pub const TWICE: Self = Self::invalid("a key is there twice");
-
     const fn invalid(message: &'static str) -> Self {
-        Self::Invalid(Cow::Borrowed(message))
+        Self(Cow::Borrowed(message))
     }
 }
 
 /// Checks the names and weights of a set.
 pub(super) fn check_shapes(shapes: &[NamedShape]) -> Result<(), ModelError> {
-    let refused = |message: String| Err(ModelError::Invalid(message.into()));
+    let refused = |message: String| Err(ModelError(message.into()));
     if shapes.is_empty() || shapes.len() > MAX_SHAPES {
         let found = shapes.len();
         return refused(format!("{found} shapes, expected 1 to {MAX_SHAPES}"));
@@ -292,7 +277,7 @@ impl Model {
             angles: ranges[Axis::Angle],
         };
         let training = Training::fitting(shapes, steps);
-        let training = training.map_err(|error| ModelError::Invalid(error.to_string().into()))?;
+        let training = training.map_err(|error| ModelError(error.to_string().into()))?;
         let mut head = training.head();
         head.cut.clear();
         let mut gathered = Gathered::default();
@@ -498,21 +483,21 @@ impl ModelMerge {
     /// # Errors
     /// Returns an error if it is not the next one, or of another training than the first. The merge then stays
     /// unchanged.
-    pub fn add(&mut self, model: &Model) -> Result<(), ModelError> {
+    pub fn add(&mut self, model: &Model) -> Result<(), MergeError> {
         let shard = model.shard();
         // Everything is checked before anything changes: after a refusal, the right shard can still be added.
         if let Some(head) = &self.head
             && !model.head().same_training(head)
         {
-            return Err(ModelError::Foreign { shard });
+            let text = format!("shard {shard} belongs to another training");
+            return Err(MergeError(text));
         }
         shard.check_after(self.head.as_ref().map(|head| head.shard))?;
         match &mut self.head {
             None => self.head = Some(model.head().clone()),
             Some(head) => {
-                let poses = head.poses.checked_add(model.poses());
-                head.poses =
-                    poses.ok_or(ModelError::invalid("counts beyond any number of poses"))?;
+                // Each is at most the number of poses of a grid.
+                head.poses += model.poses();
                 head.shard = shard;
                 for (sum, cut) in head.cut.iter_mut().zip(model.cut()) {
                     *sum += cut;
@@ -526,12 +511,13 @@ impl ModelMerge {
     /// Returns the model of all shards.
     ///
     /// # Errors
-    /// Returns an error if some or all are missing.
-    pub fn finish(self) -> Result<Model, ModelError> {
-        let mut head = self.head.ok_or(ShardOrderError::Nothing)?;
+    /// Returns an error if some or all are missing, or if their numbers contradict each other.
+    pub fn finish(self) -> Result<Model, MergeError> {
+        let mut head = self.head.ok_or_else(MergeError::nothing)?;
         head.shard.check_last()?;
         head.shard = Shard::WHOLE;
-        self.gathered.finish(head)
+        let model = self.gathered.finish(head);
+        model.map_err(|error| MergeError(error.to_string()))
     }
 }
 

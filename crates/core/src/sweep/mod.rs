@@ -37,6 +37,6 @@ mod run;
 mod count;
 
 pub use count::{CountedImprints, PoseRun};
-pub use plan::{Shard, ShardError, ShardOrderError};
-pub use result::{MergeError, Parts, PartsError, SweepMerge, SweepResult};
+pub use plan::{MergeError, Shard, ShardError};
+pub use result::{Parts, PartsError, SweepMerge, SweepResult};
 pub use run::{Sweep, TakeRow, TimingSample};

@@ -58,21 +58,24 @@ impl Shard {
     }
 
     /// Checks that a merge can take this shard after the one that it took last: the first, then the second, and so on.
-    pub(crate) fn check_after(self, last: Option<Self>) -> Result<(), ShardOrderError> {
-        let (number, of) = (last.map_or(1, |last| last.number + 1), self.of);
-        match self.number.cmp(&number) {
-            Ordering::Less => Err(ShardOrderError::Twice(self)),
-            Ordering::Greater => Err(ShardOrderError::Missing { number, of }),
+    pub(crate) fn check_after(self, last: Option<Self>) -> Result<(), MergeError> {
+        let next = last.map_or(1, |last| last.number + 1);
+        match self.number.cmp(&next) {
+            Ordering::Less => Err(MergeError(format!("shard {self} is given twice"))),
+            Ordering::Greater => Err(self.missing(next)),
             Ordering::Equal => Ok(()),
         }
     }
 
-    pub(crate) fn check_last(self) -> Result<(), ShardOrderError> {
-        if self.number == self.of {
-            return Ok(());
-        }
-        let (number, of) = (self.number + 1, self.of);
-        Err(ShardOrderError::Missing { number, of })
+    pub(crate) fn check_last(self) -> Result<(), MergeError> {
+        let is_last = self.number == self.of;
+        is_last
+            .then_some(())
+            .ok_or_else(|| self.missing(self.number + 1))
+    }
+
+    fn missing(self, number: u32) -> MergeError {
+        MergeError(format!("shard {number}/{} is missing", self.of))
     }
 
     /// Returns the number of poses of this shard in a grid.
@@ -112,23 +115,16 @@ impl ShardError {
     }
 }
 
-/// The error for shards that are not all those of one sweep or training, in their order.
+/// The error for shards that are not all those of one sweep or training, in their order; the message says which is
+/// wrong.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ShardOrderError {
-    /// There are no shards.
-    #[error("no shards to merge")]
-    Nothing,
-    /// A shard that is given twice.
-    #[error("shard {0} is given twice")]
-    Twice(Shard),
-    /// A missing shard.
-    #[error("shard {number}/{of} is missing")]
-    Missing {
-        /// The number of the missing shard, from 1.
-        number: u32,
-        /// The number of shards.
-        of: u32,
-    },
+#[error("{0}")]
+pub struct MergeError(pub(crate) String);
+
+impl MergeError {
+    pub(crate) fn nothing() -> Self {
+        Self("no shards to merge".to_owned())
+    }
 }
 
 /// Some rows of a group of orientations, and of the group of their mirror images.

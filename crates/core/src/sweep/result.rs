@@ -12,7 +12,7 @@ use crate::index::{index, wide};
 use crate::pose::{Axis, PoseGrid, PoseIndex};
 use crate::progress::ToTheEnd;
 use crate::source::Source;
-use crate::sweep::plan::{Shard, ShardOrderError, Task};
+use crate::sweep::plan::{MergeError, Shard, Task};
 use crate::sweep::runs;
 
 /// The result of a sweep.
@@ -240,14 +240,14 @@ impl SweepMerge {
     pub fn add(&mut self, result: SweepResult) -> Result<(), MergeError> {
         let shard = result.shard;
         // Everything is checked before anything changes: after a refusal, the right shard can still be added.
-        if let Some(merged) = &self.0
-            && let Some(difference) = difference(&result, merged)
-        {
-            return Err(MergeError::Foreign { shard, difference });
+        if let Some(difference) = self.0.as_ref().and_then(|own| difference(&result, own)) {
+            let text = format!("shard {shard} differs from the first one in {difference}");
+            return Err(MergeError(text));
         }
         shard.check_after(self.0.as_ref().map(|merged| merged.shard))?;
         if !result.complete() {
-            return Err(MergeError::Incomplete(shard));
+            let text = format!("shard {shard} was stopped early, run it again");
+            return Err(MergeError(text));
         }
         let Some(merged) = &mut self.0 else {
             self.0 = Some(result);
@@ -266,7 +266,7 @@ impl SweepMerge {
     /// # Errors
     /// Returns an error if some are missing.
     pub fn finish(self) -> Result<SweepResult, MergeError> {
-        let mut merged = self.0.ok_or(ShardOrderError::Nothing)?;
+        let mut merged = self.0.ok_or_else(MergeError::nothing)?;
         merged.shard.check_last()?;
         merged.shard = Shard::WHOLE;
         Ok(merged.described())
@@ -289,25 +289,6 @@ fn difference(one: &SweepResult, other: &SweepResult) -> Option<&'static str> {
     } else {
         Some("its shape")
     }
-}
-
-/// The error of a merge.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum MergeError {
-    /// Shards that are missing, or given twice.
-    #[error(transparent)]
-    Order(#[from] ShardOrderError),
-    /// A shard of another grid than the first one, or of another number of shards.
-    #[error("shard {shard} differs from the first one in {difference}")]
-    Foreign {
-        /// The shard.
-        shard: Shard,
-        /// The difference: "its shape", for example.
-        difference: &'static str,
-    },
-    /// A shard whose sweep was stopped early.
-    #[error("shard {0} was stopped early, run it again")]
-    Incomplete(Shard),
 }
 
 // The descriptors that a figure would have on a sensor of infinitely many, infinitely small cells.

@@ -4,9 +4,7 @@ use std::io::{self, Read, Seek, Write};
 
 use taxel_core::imprint::Imprint;
 use taxel_core::index::index;
-use taxel_core::recognition::{
-    ImprintKey, KeyTable, Model, ModelError, ModelHead, NamedShape, ShapeCount,
-};
+use taxel_core::recognition::{ImprintKey, KeyTable, Model, ModelHead, NamedShape, ShapeCount};
 use taxel_core::sensor::{MatrixSize, Sensor};
 use taxel_core::source::Source;
 
@@ -152,7 +150,7 @@ fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<KeyTable, ReadEr
             key.set(&imprint.ok_or_else(|| unexpected("rows"))?);
         }
         if !keys.add(&key) {
-            return Err(ReadError::new(ModelError::TWICE.to_string()));
+            return Err(ReadError::new("a key is there twice"));
         }
     }
     Ok(keys)
