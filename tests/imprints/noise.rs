@@ -7,7 +7,7 @@ use serde_json::Value;
 use taxel_core::prelude::*;
 use taxel_core::progress::ToTheEnd;
 use taxel_core::recognition::{
-    AnswerState, Evidence, Model, NamedShape, Noise, NoisyTouches, SearchMethod,
+    AnswerState, Evidence, Model, NamedShape, Noise, NoisyTouches,
 };
 
 use crate::common::size;
@@ -30,14 +30,16 @@ fn by_definition(model: &Model, imprint: &Imprint, flip: f64, dead: &Imprint) ->
     let shapes = model.shapes().len();
     let (mut sums, mut totals) = (vec![0.0; shapes], vec![0.0; shapes]);
     for key in 0..model.keys().len() {
-        let own = model.keys().imprint(key).expect("none is empty");
-        if own.columns() > imprint.columns() || own.rows() > imprint.rows() {
+        // The key of an empty imprint is one of 0 × 0 taxels.
+        let own = model.keys().imprint(key);
+        let (columns, rows) = own.map_or((0, 0), |own| (own.columns(), own.rows()));
+        if columns > imprint.columns() || rows > imprint.rows() {
             continue;
         }
-        for down in 0..=usize::from(imprint.rows() - own.rows()) {
-            for across in 0..=imprint.columns() - own.columns() {
+        for down in 0..=usize::from(imprint.rows() - rows) {
+            for across in 0..=imprint.columns() - columns {
                 let mut moved = Imprint::empty(imprint.size());
-                for (row, &word) in own.words().iter().enumerate() {
+                for (row, &word) in own.iter().flat_map(Imprint::words).enumerate() {
                     moved.set_word(row + down, word << across);
                 }
                 let cells = (0..imprint.rows())
@@ -291,21 +293,9 @@ fn probabilities_of_all_imprints_sum_up_to_one() {
 }
 
 #[test]
-fn low_noise_uses_lookups_and_higher_noise_a_scan() {
+fn an_imprint_that_no_shape_leaves_is_possible_only_under_noise() {
     let model = tiny();
-    let touch: Imprint = ".....\n.##..\n.....\n.....\n....."
-        .parse()
-        .expect("an imprint");
     let noise = |flip| Noise::new(flip).expect("in range");
-    let method = |flip| {
-        model
-            .distances(&touch, &noise(flip))
-            .expect("keys fit")
-            .method
-    };
-    assert_eq!(method(0.0), SearchMethod::Exact);
-    assert_eq!(method(1e-11), SearchMethod::OneFlip);
-    assert_eq!(method(0.01), SearchMethod::Scan);
     let nothing: Imprint = "#...#\n.....\n.....\n.....\n#...#"
         .parse()
         .expect("an imprint");
@@ -317,7 +307,7 @@ fn low_noise_uses_lookups_and_higher_noise_a_scan() {
 }
 
 #[test]
-fn lookup_and_scan_count_the_empty_imprint_alike() {
+fn the_empty_imprint_is_counted_in_every_place() {
     let sensor = sensor(16);
     let shape = |name: &str, (length, width): (f64, f64)| {
         let figure = Figure::rectangle(length, width).on(&sensor);
@@ -327,18 +317,13 @@ fn lookup_and_scan_count_the_empty_imprint_alike() {
     let shapes = vec![shape("bar", (2.0, 1.0)), shape("dot", (0.8, 0.9))];
     let model = train(shapes, 16, ranges("5:5.9:0.1", "5:5.9:0.1", "0"));
     let nothing = Imprint::empty(size(5, 5));
-    let distances = |flip: f64| {
+    for flip in [0.0, 1e-8, 0.01] {
         let noise = Noise::new(flip).expect("in range");
-        model.distances(&nothing, &noise).expect("keys fit")
-    };
-    let (near, far) = (distances(1e-8), distances(0.01));
-    assert_eq!(
-        (near.method, far.method),
-        (SearchMethod::OneFlip, SearchMethod::Scan)
-    );
-    assert!(near.touches[1].iter().all(|&touches| touches > 0));
-    for (near, far) in near.touches.iter().zip(&far.touches) {
-        assert_eq!(near[..2], far[..2]);
+        let posterior = model.posterior_under(&nothing, &noise).expect("keys fit");
+        let expected = by_definition(&model, &nothing, flip, &nothing);
+        for (found, expected) in posterior.iter().zip(expected) {
+            assert!((found - expected).abs() < 2e-9, "{flip}: {found} {expected}");
+        }
     }
 }
 

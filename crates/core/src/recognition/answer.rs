@@ -112,7 +112,7 @@ pub struct Answer {
     /// Every shape with a positive probability, the likeliest first; equally likely ones in the order of the set. Under
     /// noise, a shape may be missing if its probability is below 1e-9.
     pub ranking: Vec<(usize, f64)>,
-    /// The keys that were compared; for several touches, those of the touch that needed the most.
+    /// The keys that were compared.
     pub method: SearchMethod,
     /// The best fit of a likely shape; for several touches, to the one that differs most. None if nothing was fitted:
     /// without noise, without a touch, for an empty imprint, and if no imprint of the model fits the matrix.
@@ -174,9 +174,13 @@ impl Model {
     pub fn recognise(&self, evidence: Evidence<'_>) -> Answer {
         let (noise, touches) = (&evidence.noise(), evidence.touches);
         let may_flip = noise.flip() > 0.0;
-        let (posterior, method, mut nearest) = match noise.dead() {
-            None if !may_flip => (self.possible(touches), SearchMethod::Exact, None),
+        let (posterior, mut nearest) = match noise.dead() {
+            None if !may_flip => (self.possible(touches), None),
             _ => self.posterior_of_touches(noise, touches),
+        };
+        let method = match nearest {
+            Some(_) => SearchMethod::Scan,
+            None => SearchMethod::Exact,
         };
         if !may_flip {
             let nearest_to = |touch| self.nearest(touch, noise.dead());
@@ -265,15 +269,15 @@ impl Model {
         fitted
     }
 
-    /// Returns the probabilities of the shapes under a noise, and which keys were compared.
+    /// Returns the probabilities of the shapes under a noise, and the nearest imprint.
     fn posterior_of_touches(
         &self,
         noise: &Noise,
         touches: &[Imprint],
-    ) -> (Posterior, SearchMethod, Option<Nearest>) {
+    ) -> (Posterior, Option<Nearest>) {
         let mut further = 0;
         loop {
-            let (odds, method, nearest) = self.odds_under(noise, touches, further);
+            let (odds, nearest) = self.odds_under(noise, touches, further);
             let most = (odds.iter()).fold(f64::NEG_INFINITY, |most, [_, odds]| most.max(*odds));
             let sum = |which: usize| -> f64 {
                 let own = odds.iter().map(|odds| odds[which]);
@@ -284,25 +288,24 @@ impl Model {
             if all - least <= NEGLIGIBLE * least || !most.is_finite() {
                 let odds: Vec<f64> = odds.into_iter().map(|[odds, _]| odds).collect();
                 let posterior = Posterior::of_logarithms(&odds, touches.len());
-                return (posterior, method, nearest);
+                return (posterior, nearest);
             }
             further = 2 * further + 4;
         }
     }
 
-    /// Returns a lower and an upper bound of ln(w Π P(touch | s)) for each shape, and which keys were compared. Takes
+    /// Returns a lower and an upper bound of ln(w Π P(touch | s)) for each shape, and the nearest imprint. Takes
     /// `further` more distances into account than one touch needs.
     fn odds_under(
         &self,
         noise: &Noise,
         touches: &[Imprint],
         further: u32,
-    ) -> (Vec<[f64; 2]>, SearchMethod, Option<Nearest>) {
+    ) -> (Vec<[f64; 2]>, Option<Nearest>) {
         // The logarithms to add up for each shape: of its weight, and both bounds of each touch.
         let weights = self.log_weights().into_iter();
         let mut parts: Vec<[Vec<f64>; 2]> =
             weights.map(|weight| [vec![weight], vec![weight]]).collect();
-        let mut method = SearchMethod::Exact;
         let mut nearest = Vec::new();
         for touch in touches {
             let Some(distances) = self.distances_further(touch, noise, further) else {
@@ -311,7 +314,6 @@ impl Model {
                 bounds.for_each(|own| own.push(f64::NEG_INFINITY));
                 continue;
             };
-            method = method.max(distances.method);
             let likelihoods = self.log_likelihoods(touch, &distances, noise);
             for ([lower, upper], likelihood) in parts.iter_mut().zip(likelihoods) {
                 lower.push(likelihood[0]);
@@ -326,7 +328,6 @@ impl Model {
         };
         (
             parts.into_iter().map(|bounds| bounds.map(sum)).collect(),
-            method,
             first_unknown(nearest.into_iter(), |nearest| nearest),
         )
     }

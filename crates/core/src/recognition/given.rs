@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::atlas::ImprintSummary;
 use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, ExactValue, Value};
 use crate::imprint::Imprint;
-use crate::index::{narrow, wide};
+
 use crate::parameter::number::share;
 use crate::progress::Progress;
 use crate::quote::{did_you_mean, shortened};
@@ -130,12 +130,28 @@ pub struct GivenDescriptors {
 impl GivenDescriptors {
     /// Returns the limit of one touch if only these descriptors are known.
     pub fn evaluate(&self, model: &Model) -> Evaluation {
-        let descriptions = descriptions(model);
-        let mut classes = vec![0; descriptions.len()];
-        for &descriptor in &self.descriptors {
-            classes = refined(&descriptions, &classes, descriptor, &self.roundings);
+        self.evaluate_described(model, &descriptions(model))
+    }
+
+    fn evaluate_described(
+        &self,
+        model: &Model,
+        descriptions: &[Option<Description>],
+    ) -> Evaluation {
+        // Keys with the same values are one class; classes are in the order of their first keys.
+        let mut classes: HashMap<Vec<ExactValue>, usize> = HashMap::new();
+        let mut counts: Vec<Vec<ShapeCount>> = Vec::new();
+        for (key, description) in descriptions.iter().enumerate() {
+            let values = self.values(description.as_ref());
+            let class = *classes.entry(values).or_insert(counts.len());
+            if class == counts.len() {
+                counts.push(Vec::new());
+            }
+            for &count in model.counts(key) {
+                add_count(&mut counts[class], count);
+            }
         }
-        evaluate(model, &classes)
+        Evaluation::of_classes(model, counts.iter().map(Vec::as_slice))
     }
 
     /// Draws noisy touches as [`Model::recognition_rate`] does and names them by these descriptors alone: by the shape
@@ -198,39 +214,6 @@ pub(super) fn descriptions(model: &Model) -> Vec<Option<Description>> {
     keys.with_min_len(256).map(describe).collect()
 }
 
-/// For each key, the number of its class. Classes are numbered from 0, in the order of their first keys.
-type Classes = Vec<u32>;
-
-/// Returns the classes that remain if one more descriptor is known.
-fn refined(
-    descriptions: &[Option<Description>],
-    classes: &Classes,
-    descriptor: ShapeDescriptor,
-    roundings: &[Rounding],
-) -> Classes {
-    let mut numbers = HashMap::new();
-    let members = classes.iter().zip(descriptions);
-    let number = members.map(|(&class, description)| {
-        let next = narrow(numbers.len());
-        let value = descriptor.value(roundings, description.as_ref());
-        *numbers.entry((class, value)).or_insert(next)
-    });
-    number.collect()
-}
-
-fn evaluate(model: &Model, classes: &Classes) -> Evaluation {
-    let mut counts: Vec<Vec<ShapeCount>> = Vec::new();
-    for (key, &class) in classes.iter().enumerate() {
-        let class = wide(class);
-        if class == counts.len() {
-            counts.push(Vec::new());
-        }
-        for &count in model.counts(key) {
-            add_count(&mut counts[class], count);
-        }
-    }
-    Evaluation::of_classes(model, counts.iter().map(Vec::as_slice))
-}
 
 impl Rounding {
     /// Returns the number of steps that is nearest to a number. Directions of 180° and −180° are the same one, if a
@@ -289,30 +272,34 @@ impl Model {
     /// chosen.
     pub fn choose_descriptors(&self, roundings: &[Rounding]) -> Vec<ChosenDescriptor> {
         let descriptions = descriptions(self);
-        let mut classes = vec![0; descriptions.len()];
-        let mut chosen: Vec<ChosenDescriptor> = Vec::new();
-        let mut right = evaluate(self, &classes).right;
+        let mut given = GivenDescriptors {
+            descriptors: Vec::new(),
+            roundings: roundings.to_vec(),
+        };
+        let mut right = given.evaluate_described(self, &descriptions).right;
+        let mut chosen = Vec::new();
         loop {
             let mut best = None;
             for descriptor in ShapeDescriptor::all() {
-                if chosen.iter().any(|own| own.descriptor == descriptor) {
+                if given.descriptors.contains(&descriptor) {
                     continue;
                 }
-                let refined = refined(&descriptions, &classes, descriptor, roundings);
-                let evaluation = evaluate(self, &refined);
+                given.descriptors.push(descriptor);
+                let evaluation = given.evaluate_described(self, &descriptions);
+                given.descriptors.pop();
                 if evaluation.right > right {
                     right = evaluation.right;
-                    best = Some((descriptor, evaluation, refined));
+                    best = Some(ChosenDescriptor {
+                        descriptor,
+                        evaluation,
+                    });
                 }
             }
-            let Some((descriptor, evaluation, refined)) = best else {
+            let Some(best) = best else {
                 return chosen;
             };
-            classes = refined;
-            chosen.push(ChosenDescriptor {
-                descriptor,
-                evaluation,
-            });
+            given.descriptors.push(best.descriptor);
+            chosen.push(best);
         }
     }
 }

@@ -14,22 +14,16 @@ use crate::recognition::model::{Model, ScanTables, float};
 use crate::recognition::scan::{Nearest, Observed, shift_count};
 use crate::sensor::MatrixSize;
 
-/// The keys that were compared for an answer, the fewest first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+/// The keys that were compared for an answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SearchMethod {
     /// The key of the imprint itself.
     Exact,
-    /// The keys of all imprints that differ from it by one taxel at most.
-    OneFlip,
     /// All keys in all places.
     Scan,
 }
 
-named!(
-    SearchMethod,
-    "method",
-    [Exact "exact", OneFlip "one-flip", Scan "scan"]
-);
+named!(SearchMethod, "method", [Exact "exact", Scan "scan"]);
 
 /// The number of touches of each shape at each distance from an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,8 +32,6 @@ pub struct Distances {
     pub nearest: Nearest,
     /// For each shape, the number of touches at each distance from that of the nearest on.
     pub touches: Vec<Vec<u64>>,
-    /// The keys that were compared.
-    pub method: SearchMethod,
 }
 
 impl Model {
@@ -143,14 +135,8 @@ impl Model {
         let of_one = totals.iter().zip(weights);
         let odds = of_one.map(|(&total, weight)| float(total) / weight * of_all);
         let reach = noise.reach(odds.fold(1.0, f64::max)) + further;
-        if noise.dead().is_none() && reach <= 1 {
-            let near = self.near(imprint, reach);
-            if near.is_some() || noise.flip() == 0.0 {
-                return near;
-            }
-        }
         let observed = Observed::new(imprint, noise.dead());
-        let nearest = self.nearest(imprint, noise.dead())?;
+        let nearest = self.nearest_to(&observed)?;
         let least = nearest.distance;
         if noise.flip() == 0.0 && least > 0 {
             return None;
@@ -161,41 +147,6 @@ impl Model {
         Some(Distances {
             nearest,
             touches: self.histogram(&observed, least, most),
-            method: SearchMethod::Scan,
-        })
-    }
-
-    /// Looks up the key of the imprint itself and, if larger distances matter, the keys of all imprints that differ by
-    /// one taxel. None if that is not enough.
-    fn near(&self, imprint: &Imprint, reach: u32) -> Option<Distances> {
-        // If no shape leaves the imprint, the least distance may be 1, but then distance 2 matters too.
-        let nearest = self.nearest_known(imprint)?;
-        let nowhere = shift_count((0, 0), imprint.size());
-        let mut touches = vec![vec![0; wide(reach) + 1]; self.shapes().len()];
-        let mut add = |imprint: &Imprint, distance: usize| {
-            // The empty key is the same in every place.
-            let times = if imprint.is_empty() { nowhere } else { 1 };
-            for count in self.counts_of(imprint) {
-                touches[usize::from(count.shape)][distance] += count.poses * times;
-            }
-        };
-        add(imprint, 0);
-        let mut method = SearchMethod::Exact;
-        if reach > 0 {
-            method = SearchMethod::OneFlip;
-            let mut flipped = *imprint;
-            for row in 0..imprint.rows() {
-                for column in 0..imprint.columns() {
-                    flipped.toggle(column, row);
-                    add(&flipped, 1);
-                    flipped.toggle(column, row);
-                }
-            }
-        }
-        Some(Distances {
-            nearest,
-            touches,
-            method,
         })
     }
 
@@ -453,7 +404,6 @@ mod tests {
             let distances = Distances {
                 nearest: model.nearest(&touch, None).expect("it fits"),
                 touches: vec![touches.to_vec()],
-                method: SearchMethod::Scan,
             };
             model.log_likelihoods(&touch, &distances, &noise)[0]
         };

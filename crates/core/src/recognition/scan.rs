@@ -580,36 +580,30 @@ impl Model {
     ///
     /// The first call sorts the keys for scans and takes longer.
     pub fn nearest(&self, observed: &Imprint, dead: Option<&Imprint>) -> Option<Nearest> {
+        self.nearest_to(&Observed::new(observed, dead))
+    }
+
+    pub(super) fn nearest_to(&self, observed: &Observed) -> Option<Nearest> {
+        let nearest = |key, distance, imprint| Nearest {
+            shape: self.most_frequent(key).0,
+            distance,
+            imprint,
+            key,
+        };
         // With dead taxels, the key of the imprint alone is not enough: a dead taxel may be a hole in it.
-        if dead.is_none()
-            && let Some(known) = self.nearest_known(observed)
+        if observed.living.is_none()
+            && let Some(key) = self.keys().find(&ImprintKey::of(&observed.seen))
         {
-            return Some(known);
+            return Some(nearest(key, 0, observed.seen));
         }
         let rank = |key: usize| Reverse(self.most_frequent(key).1);
-        let found = (self.scan_tables().index).nearest(&Observed::new(observed, dead), rank)?;
-        let mut imprint = Imprint::empty(observed.size());
+        let found = (self.scan_tables().index).nearest(observed, rank)?;
+        let mut imprint = Imprint::empty(observed.seen.size());
         let (column, row) = found.place;
         for (index, word) in self.keys().get(found.key).rows().enumerate() {
             imprint.set_word(usize::from(row) + index, word << column);
         }
-        Some(Nearest {
-            shape: self.most_frequent(found.key).0,
-            distance: found.distance,
-            imprint,
-            key: found.key,
-        })
-    }
-
-    /// Returns an imprint itself as the nearest one; None if no shape leaves it.
-    pub(super) fn nearest_known(&self, imprint: &Imprint) -> Option<Nearest> {
-        let key = self.keys().find(&ImprintKey::of(imprint))?;
-        Some(Nearest {
-            shape: self.most_frequent(key).0,
-            distance: 0,
-            imprint: *imprint,
-            key,
-        })
+        Some(nearest(found.key, found.distance, imprint))
     }
 
     /// Returns the shape that leaves a key most often (the first among equals), and how often.

@@ -332,29 +332,15 @@ impl Model {
         let draws = Draw::all(self, |_| 1);
         let shapes = self.shapes().len() as u64;
         let of_shape = |(shape, draw): (usize, &Draw)| {
-            let run = |mut counts: RunCounts, run: u64| {
+            let run = |run: u64| {
                 let task = run.wrapping_mul(shapes).wrapping_add(shape as u64);
-                let mut random = generator(seed, task);
-                let run = self.run_until(until, draw, shape, &mut random);
-                let right = run.is_some_and(|(_, right)| right);
-                add_runs(
-                    &mut counts,
-                    run.map(|(length, _)| length),
-                    [1, right.into()],
-                );
-                progress.add(1).is_continue().then_some(counts)
+                let run = self.run_until(until, draw, shape, &mut generator(seed, task));
+                progress.add(1).is_continue().then_some(run)
             };
-            let sum = |mut one: RunCounts, other: RunCounts| {
-                for (length, more) in other {
-                    add_runs(&mut one, length, more);
-                }
-                Some(one)
-            };
-            let counted = (0..runs).into_par_iter().try_fold(RunCounts::new, run);
-            counted.try_reduce(RunCounts::new, sum)
+            let runs = (0..runs).into_par_iter().map(run);
+            Some(TouchesUntil::of(&runs.collect::<Option<Vec<_>>>()?))
         };
-        let counts = draws.iter().enumerate().map(of_shape);
-        counts.map(|own| Some(summary(&own?))).collect()
+        draws.iter().enumerate().map(of_shape).collect()
     }
 
     /// Returns the number of touches of one run, and whether it ended with the right shape. None if the run was
@@ -380,43 +366,34 @@ impl Model {
     }
 }
 
-/// The runs of a shape by their number of touches (None for abandoned ones): how many, and how many of them ended with
-/// the right shape. The counts are whole numbers, so their order does not matter, and they take no more memory for more
-/// runs.
-type RunCounts = BTreeMap<Option<u32>, [u64; 2]>;
-
-/// Returns the mean and its standard error. Both are None if a run was abandoned: without it, the mean would be too
-/// small.
-fn summary(counts: &RunCounts) -> TouchesUntil {
-    let reached = || {
-        counts
-            .iter()
-            .filter_map(|(length, own)| Some(((*length)?, own[0])))
-    };
-    let sum_of = |value: &dyn Fn(f64) -> f64| -> f64 {
-        let values = reached().map(|(length, runs)| value(length.into()) * float(runs));
-        values.sum()
-    };
-    let runs = counts.values().map(|[runs, _]| runs).sum();
-    let reaching = reached().map(|(_, runs)| runs).sum();
-    let mean = (reaching == runs && runs > 0).then(|| sum_of(&|length| length) / float(runs));
-    let standard_error = mean.filter(|_| runs > 1).map(|mean| {
-        let squares = sum_of(&|length| (length - mean) * (length - mean));
-        (squares / float(runs - 1) / float(runs)).sqrt()
-    });
-    TouchesUntil {
-        mean,
-        standard_error,
-        reached: reaching,
-        runs,
-        right: counts.values().map(|[_, right]| right).sum(),
+impl TouchesUntil {
+    /// Sums up some runs: the number of touches of each, and whether it ended with the right shape; None for one that
+    /// was abandoned.
+    fn of(runs: &[Option<(u32, bool)>]) -> Self {
+        let ended = || runs.iter().flatten();
+        let mut counts: BTreeMap<u32, u64> = BTreeMap::new();
+        for (length, _) in ended() {
+            *counts.entry(*length).or_default() += 1;
+        }
+        let sum_of = |value: &dyn Fn(f64) -> f64| -> f64 {
+            let values = counts.iter();
+            let values = values.map(|(&length, &runs)| value(length.into()) * float(runs));
+            values.sum()
+        };
+        let (all, reached) = (runs.len() as u64, ended().count() as u64);
+        let mean = (reached == all && all > 0).then(|| sum_of(&|length| length) / float(all));
+        let standard_error = mean.filter(|_| all > 1).map(|mean| {
+            let squares = sum_of(&|length| (length - mean) * (length - mean));
+            (squares / float(all - 1) / float(all)).sqrt()
+        });
+        Self {
+            mean,
+            standard_error,
+            reached,
+            runs: all,
+            right: ended().filter(|(_, right)| *right).count() as u64,
+        }
     }
-}
-
-fn add_runs(counts: &mut RunCounts, length: Option<u32>, more: [u64; 2]) {
-    let [runs, right] = counts.entry(length).or_default();
-    *runs += more[0];
-    *right += more[1];
 }
 
 #[cfg(test)]
@@ -550,19 +527,6 @@ mod tests {
         }
     }
 
-    fn summary(runs: &[Option<(u32, bool)>]) -> TouchesUntil {
-        let mut counts = RunCounts::new();
-        for run in runs {
-            let right = run.is_some_and(|(_, right)| right);
-            add_runs(
-                &mut counts,
-                run.map(|(length, _)| length),
-                [1, right.into()],
-            );
-        }
-        super::summary(&counts)
-    }
-
     #[test]
     fn any_number_of_runs_can_be_stopped() {
         let sensor = Sensor::default();
@@ -577,9 +541,9 @@ mod tests {
 
     #[test]
     fn an_abandoned_run_leaves_no_mean() {
-        let known = summary(&[Some((2, true)), Some((4, true))]);
+        let known = TouchesUntil::of(&[Some((2, true)), Some((4, true))]);
         assert_eq!((known.mean, known.standard_error), (Some(3.0), Some(1.0)));
-        let unknown = summary(&[Some((2, true)), None, Some((4, true))]);
+        let unknown = TouchesUntil::of(&[Some((2, true)), None, Some((4, true))]);
         assert_eq!((unknown.mean, unknown.standard_error), (None, None));
         assert_eq!((unknown.reached, unknown.runs), (2, 3));
     }
@@ -618,9 +582,9 @@ mod tests {
 
     #[test]
     fn a_single_run_has_a_mean_but_no_error() {
-        let found = summary(&[Some((3, true))]);
+        let found = TouchesUntil::of(&[Some((3, true))]);
         assert_eq!((found.mean, found.standard_error), (Some(3.0), None));
-        let found = summary(&[Some((3, true)), Some((5, false))]);
+        let found = TouchesUntil::of(&[Some((3, true)), Some((5, false))]);
         assert_eq!((found.mean, found.standard_error), (Some(4.0), Some(1.0)));
         assert_eq!((found.reached, found.right), (2, 1));
     }
