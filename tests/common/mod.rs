@@ -6,6 +6,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::parameter::Parameter;
 use taxel_core::picture::Picture;
 use taxel_core::sensor::{MatrixSize, Sensor};
+use taxel_core::source::Source;
 
 /// Returns the size of a matrix. Panics if it is not allowed.
 pub(crate) fn size(columns: u8, rows: u8) -> MatrixSize {
@@ -96,7 +97,7 @@ pub(crate) fn figure(text: &str, side: u8) -> Figure {
 }
 
 /// Reads a picture such as `##/#. x0=1 y0=1 angle=10 zoom_x=2 zoom_y=2`. The angle is 0 and the zoom 1 if not given.
-pub(crate) fn picture(text: &str, side: u8) -> Picture {
+pub(crate) fn picture(text: &str, side: u8) -> Source {
     let rows = text.split_whitespace().next().expect("rows first");
     let given = |parameter| {
         value(text, parameter).or(match parameter {
@@ -105,7 +106,8 @@ pub(crate) fn picture(text: &str, side: u8) -> Picture {
             _ => None,
         })
     };
-    Picture::new(grid(rows), &square(side), given).expect("values in range")
+    let home = Source::from(Picture::at_home(grid(rows)));
+    home.placed(&square(side), given).expect("values in range")
 }
 
 /// Reads an imprint from rows with `/` or line ends between them. Spaces around the rows are ignored.

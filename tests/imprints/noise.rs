@@ -6,9 +6,7 @@ use std::path::PathBuf;
 use serde_json::Value;
 use taxel_core::prelude::*;
 use taxel_core::progress::ToTheEnd;
-use taxel_core::recognition::{
-    AnswerState, Evidence, Model, NamedShape, Noise, NoisyTouches,
-};
+use taxel_core::recognition::{AnswerState, Evidence, Model, NamedShape, Noise, NoisyTouches};
 
 use crate::common::size;
 use crate::recognition::{float, published, ranges, s1, s4, sensor, train};
@@ -322,7 +320,10 @@ fn the_empty_imprint_is_counted_in_every_place() {
         let posterior = model.posterior_under(&nothing, &noise).expect("keys fit");
         let expected = by_definition(&model, &nothing, flip, &nothing);
         for (found, expected) in posterior.iter().zip(expected) {
-            assert!((found - expected).abs() < 2e-9, "{flip}: {found} {expected}");
+            assert!(
+                (found - expected).abs() < 2e-9,
+                "{flip}: {found} {expected}"
+            );
         }
     }
 }

@@ -15,6 +15,7 @@ use taxel_core::geometry::Solid;
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::Parameter;
 use taxel_core::picture::Picture;
+use taxel_core::source::Source;
 use taxel_core::touch::Plane;
 
 use crate::common::{Random, sensor, size};
@@ -204,10 +205,10 @@ fn outlines(figure: &Figure) -> (Outline, Option<Outline>) {
 }
 
 /// Returns the outlines of a picture's squares.
-fn squares(picture: &Picture) -> Vec<Outline> {
-    let get = |parameter| picture.get(parameter).expect("a parameter of pictures");
+fn squares(imprint: &Imprint, placed: &Source) -> Vec<Outline> {
+    let get = |parameter| placed.get(parameter).expect("a parameter of pictures");
     let (zoom_x, zoom_y) = (get(Parameter::ZoomX), get(Parameter::ZoomY));
-    let Some(bounds) = picture.imprint().bounds() else {
+    let Some(bounds) = imprint.bounds() else {
         return Vec::new();
     };
     let (left, top) = (get(Parameter::X0) * zoom_x, get(Parameter::Y0) * zoom_y);
@@ -228,7 +229,7 @@ fn squares(picture: &Picture) -> Vec<Outline> {
             place(i, j + 1),
         ])
     };
-    picture.imprint().active().map(square).collect()
+    imprint.active().map(square).collect()
 }
 
 /// Adds an outline's area in every cell, times `sign`, to `cells`.
@@ -377,7 +378,8 @@ fn pictures_agree() {
         }
         let size = (plane.sensor().columns(), plane.sensor().rows());
         let side = plane.sensor().side();
-        let picture = Picture::new(imprint, plane.sensor(), |parameter| match parameter {
+        let home = Source::from(Picture::at_home(imprint));
+        let picture = home.placed(plane.sensor(), |parameter| match parameter {
             Parameter::X0 | Parameter::Y0 => Some(random.decimal(-1, i32::from(side))),
             Parameter::Angle => Some(random.angle()),
             _ if random.chance(50) => Some(random.size(64)),
@@ -385,7 +387,7 @@ fn pictures_agree() {
         });
         let picture = picture.expect("drawn within the ranges");
         let mut slow = vec![0.0; usize::from(size.0) * usize::from(size.1)];
-        for square in squares(&picture) {
+        for square in squares(&imprint, &picture) {
             add(&mut slow, size, &square, 1.0);
         }
         ties += compare(&mut plane, &picture, &slow);

@@ -10,7 +10,7 @@
 use std::sync::Arc;
 
 use crate::geometry::{Double, Ellipse, Extent, Pen, Point, Real, Side, Solid, Turn};
-use crate::parameter::{Parameter, ParameterError};
+use crate::parameter::Parameter;
 use crate::picture::PICTURE_PARAMETERS;
 use crate::sensor::Sensor;
 use crate::values::Values;
@@ -60,7 +60,8 @@ pub struct OutlineError(pub(crate) String);
 /// let plate = Ring::Polygon(vec![[0.0, 0.0], [6.0, 0.0], [6.0, 4.0], [0.0, 4.0]]);
 /// let hole = Ring::Ellipse(EllipseRing { centre: [2.0, 2.0], radii: [1.0, 1.0], angle: 0.0 });
 /// let sensor = Sensor::default();
-/// let outline = Outline::new(vec![plate, hole], None)?.with(Parameter::X0, 5.0, &sensor)?;
+/// let outline: Source = Outline::new(vec![plate, hole], None)?.into();
+/// let outline = outline.with(Parameter::X0, 5.0, &sensor)?;
 /// let mut plane = Plane::new(sensor);
 /// plane.touch(&outline);
 /// let covered: f64 = plane.coverages().values().iter().sum();
@@ -71,7 +72,7 @@ pub struct OutlineError(pub(crate) String);
 pub struct Outline {
     form: Arc<Form>,
     pub(crate) values: Values,
-    name: Option<Arc<str>>,
+    pub(crate) name: Option<Arc<str>>,
 }
 
 impl PartialEq for Outline {
@@ -151,32 +152,6 @@ impl Outline {
             .put(Parameter::X0, place(sensor.columns(), width));
         self.values.put(Parameter::Y0, place(sensor.rows(), height));
         self
-    }
-
-    /// Returns the same outline with one parameter changed to `value`, in the parameter's unit.
-    ///
-    /// # Errors
-    /// Returns an error if the value is out of range on the sensor, or the parameter is not one of
-    /// [`PICTURE_PARAMETERS`].
-    pub fn with(
-        mut self,
-        parameter: Parameter,
-        value: f64,
-        sensor: &Sensor,
-    ) -> Result<Self, ParameterError> {
-        let value = sensor.check_own("outline", PICTURE_PARAMETERS, parameter, value)?;
-        self.values.put(parameter, value);
-        Ok(self)
-    }
-
-    /// Returns the value of a parameter; None for one that an outline does not have.
-    pub fn get(&self, parameter: Parameter) -> Option<f64> {
-        self.values.get(parameter)
-    }
-
-    /// Returns the name under which the outline is stored; None if it was not given.
-    pub fn name(&self) -> Option<&str> {
-        self.name.as_deref()
     }
 
     /// Returns the rings, without placement, in mm if there is a [pitch](Self::pitch_mm), otherwise in cells.
@@ -269,18 +244,6 @@ impl Solid for Outline {
                 }
             }
         }
-    }
-}
-
-impl std::fmt::Display for Outline {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("outline")?;
-        if let Some(name) = &self.name {
-            write!(f, " of {name}")?;
-        }
-        let text = |own: Parameter| own.format(self.values.of(own));
-        let [x0, y0, angle, zoom_x, zoom_y] = PICTURE_PARAMETERS.map(text);
-        write!(f, " at {x0}, {y0}, {angle}°, zoom {zoom_x} × {zoom_y}")
     }
 }
 
@@ -682,6 +645,8 @@ impl Bins {
 mod tests {
     use super::*;
     use crate::figure::Figure;
+    use crate::parameter::ParameterError;
+    use crate::source::Source;
     use crate::touch::Plane;
 
     fn ellipse(centre: [f64; 2], radii: [f64; 2], angle: f64) -> Ring {
@@ -845,8 +810,7 @@ mod tests {
                 );
                 let angle = f64::from(step * 15 % 360);
                 let figure = figure.at(x0, y0).angle(angle).on(&sensor)?;
-                let outline = outline
-                    .clone()
+                let outline = Source::from(outline.clone())
                     .with(X0, x0, &sensor)?
                     .with(Y0, y0, &sensor)?;
                 // Figures turn clockwise, outlines counter-clockwise.

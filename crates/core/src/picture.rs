@@ -10,8 +10,7 @@ use std::sync::Arc;
 
 use crate::geometry::{Pen, Point, Real, Solid, Turn};
 use crate::imprint::Imprint;
-use crate::parameter::{Parameter, ParameterError};
-use crate::sensor::Sensor;
+use crate::parameter::Parameter;
 use crate::values::Values;
 
 /// The parameters of a picture, in the order in which forms show them.
@@ -32,7 +31,7 @@ pub struct Picture {
     imprint: Imprint,
     pub(crate) values: Values,
     /// The name of the stored imprint; shared, so that moving a picture does not allocate.
-    name: Option<Arc<str>>,
+    pub(crate) name: Option<Arc<str>>,
 }
 
 impl PartialEq for Picture {
@@ -60,51 +59,6 @@ impl Picture {
     pub fn named(mut self, name: &str) -> Self {
         self.name = Some(name.into());
         self
-    }
-
-    /// Creates a picture from the values that `value` returns for [`PICTURE_PARAMETERS`], each in range on the
-    /// sensor.
-    ///
-    /// # Errors
-    /// Returns the error of the first value that is missing or out of range.
-    pub fn new(
-        imprint: Imprint,
-        sensor: &Sensor,
-        value: impl FnMut(Parameter) -> Option<f64>,
-    ) -> Result<Self, ParameterError> {
-        let values = Values::new(PICTURE_PARAMETERS, sensor, value)?;
-        let name = None;
-        Ok(Self {
-            imprint,
-            values,
-            name,
-        })
-    }
-
-    /// Returns the same picture with one parameter changed to `value`, in the parameter's unit.
-    ///
-    /// # Errors
-    /// Returns an error if the value is out of range on the sensor, or the parameter is not one of
-    /// [`PICTURE_PARAMETERS`].
-    pub fn with(
-        mut self,
-        parameter: Parameter,
-        value: f64,
-        sensor: &Sensor,
-    ) -> Result<Self, ParameterError> {
-        let value = sensor.check_own("picture", PICTURE_PARAMETERS, parameter, value)?;
-        self.values.put(parameter, value);
-        Ok(self)
-    }
-
-    /// Returns the value of a parameter; None for one that a picture does not have.
-    pub fn get(&self, parameter: Parameter) -> Option<f64> {
-        self.values.get(parameter)
-    }
-
-    /// Returns the name under which the imprint is stored; None if it was not given.
-    pub fn name(&self) -> Option<&str> {
-        self.name.as_deref()
     }
 
     /// Returns the stored imprint, without placement.
@@ -215,18 +169,6 @@ fn runs(mut word: u64) -> impl Iterator<Item = (u8, u8)> {
     })
 }
 
-impl std::fmt::Display for Picture {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("picture")?;
-        if let Some(name) = &self.name {
-            write!(f, " of {name}")?;
-        }
-        let text = |own: Parameter| own.format(self.values.of(own));
-        let [x0, y0, angle, zoom_x, zoom_y] = PICTURE_PARAMETERS.map(text);
-        write!(f, " at {x0}, {y0}, {angle}°, zoom {zoom_x} × {zoom_y}")
-    }
-}
-
 #[cfg(test)]
 mod tests {
     #[test]
@@ -234,7 +176,7 @@ mod tests {
         use crate::prelude::*;
         let sensor = Sensor::default();
         let bar: Imprint = "###".parse().expect("a row of taxels");
-        let turned = Picture::at_home(bar)
+        let turned = Source::from(Picture::at_home(bar))
             .with(Parameter::X0, 5.0, &sensor)?
             .with(Parameter::Y0, 5.0, &sensor)?
             .with(Parameter::Angle, 90.0, &sensor)?;

@@ -177,8 +177,8 @@ impl Source {
     pub fn stored_name(&self) -> Option<&str> {
         match self {
             Self::Figure(_) => None,
-            Self::Picture(picture) => picture.name(),
-            Self::Outline(outline) => outline.name(),
+            Self::Picture(picture) => picture.name.as_deref(),
+            Self::Outline(outline) => outline.name.as_deref(),
         }
     }
 
@@ -264,10 +264,15 @@ impl Solid for Source {
 
 impl fmt::Display for Source {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Figure(figure) => figure.fmt(f),
-            Self::Picture(picture) => picture.fmt(f),
-            Self::Outline(outline) => outline.fmt(f),
+        if let Self::Figure(figure) = self {
+            return figure.fmt(f);
         }
+        f.write_str(self.noun())?;
+        if let Some(name) = self.stored_name() {
+            write!(f, " of {name}")?;
+        }
+        let text = |own: Parameter| own.format(self.values().of(own));
+        let [x0, y0, angle, zoom_x, zoom_y] = PICTURE_PARAMETERS.map(text);
+        write!(f, " at {x0}, {y0}, {angle}°, zoom {zoom_x} × {zoom_y}")
     }
 }

@@ -42,11 +42,11 @@ fn sources(sensor: Sensor) -> impl Strategy<Value = Option<Source>> {
     let picture = (imprints(), -reach..=reach, 1e-9..=64.0);
     let picture = picture.prop_map(move |(imprint, y0, zoom)| {
         // The picture is only in its own place if it is not larger than the sensor.
-        let picture = Picture::at_home(imprint)
+        let picture = Source::from(Picture::at_home(imprint))
             .with(Parameter::X0, 0.0, &sensor)
             .and_then(|picture| picture.with(Parameter::Y0, y0, &sensor))
             .and_then(|picture| picture.with(Parameter::ZoomX, zoom, &sensor));
-        Some(Source::Picture(picture.expect("in range")))
+        Some(picture.expect("in range"))
     });
     prop_oneof![Just(None), figure, picture]
 }

@@ -6,6 +6,7 @@ use taxel_core::description::{RegionKind, regions};
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::Parameter;
 use taxel_core::picture::Picture;
+use taxel_core::source::Source;
 use taxel_core::touch::Plane;
 use taxel_files::storage::{Library, LoadedShape, ShapeOrigin, shipped};
 
@@ -101,14 +102,9 @@ fn without_angle_and_zoom_a_picture_is_only_shifted() {
     for LoadedShape { shape, .. } in all() {
         let (imprint, sensor) = (shape.imprint, shape.sensor);
         let bounds = imprint.bounds().expect("not empty");
-        let home = Picture::at_home(imprint);
+        let home = Source::from(Picture::at_home(imprint));
         let mut plane = Plane::new(sensor);
-        assert_eq!(
-            plane.touch(&Picture::at_home(imprint)),
-            imprint,
-            "{}",
-            shape.name
-        );
+        assert_eq!(plane.touch(&home), imprint, "{}", shape.name);
         for top in 0..=sensor.rows() - (bounds.bottom - bounds.top) {
             for left in 0..=sensor.columns() - (bounds.right - bounds.left) {
                 let moved = home

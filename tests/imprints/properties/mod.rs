@@ -145,7 +145,7 @@ proptest! {
     #[test]
     fn a_picture_moved_by_whole_cells_is_shifted(imprint in imprints(1..=20, 1..=20), by in (-15..=15, -15..=15)) {
         let imprint = imprint.resized(size(20, 20));
-        let mut picture = Picture::at_home(imprint);
+        let mut picture = Source::from(Picture::at_home(imprint));
         for (parameter, by) in [(Parameter::X0, by.0), (Parameter::Y0, by.1)] {
             let at = picture.get(parameter).expect("a parameter of pictures") + f64::from(by);
             prop_assume!((-20.0..=20.0).contains(&at));
@@ -165,13 +165,13 @@ proptest! {
         let mut plane = Plane::new(sensor(side, side, 0.5));
         let mut turned = first;
         for _ in 0..4 {
-            let picture = Picture::at_home(turned).with(Parameter::Angle, 90.0, plane.sensor()).expect("in range");
+            let picture = Source::from(Picture::at_home(turned)).with(Parameter::Angle, 90.0, plane.sensor()).expect("in range");
             let expected = moved(&turned, |i, j| (j, last - i));
             turned = plane.touch(&picture);
             prop_assert_eq!(turned, expected);
         }
         prop_assert_eq!(turned, first);
-        let half = Picture::at_home(first).with(Parameter::Angle, 180.0, plane.sensor()).expect("in range");
+        let half = Source::from(Picture::at_home(first)).with(Parameter::Angle, 180.0, plane.sensor()).expect("in range");
         prop_assert_eq!(plane.touch(&half), moved(&first, |i, j| (last - i, last - j)));
     }
 
@@ -194,9 +194,9 @@ proptest! {
         let long = |number: u32| f64::from(number) / f64::from(u32::MAX) * f64::from(sensor.side());
         let source = match source {
             0 => None,
-            1 => Some(Source::Picture(Picture::at_home(imprint)
+            1 => Some(Source::from(Picture::at_home(imprint))
                 .with(Parameter::X0, long(numbers[0]), &sensor).expect("in range")
-                .with(Parameter::ZoomY, f64::from(numbers[1]) / 1e9 + 1e-9, &sensor).expect("in range"))),
+                .with(Parameter::ZoomY, f64::from(numbers[1]) / 1e9 + 1e-9, &sensor).expect("in range")),
             _ => {
                 let (kind, sizes, place, angle, wall) = drawn;
                 let sizes = (sizes.0.min(100), sizes.1.min(100));

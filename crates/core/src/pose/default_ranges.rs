@@ -359,10 +359,10 @@ mod tests {
         let ranges = default_ranges(&washer.into(), &sensor, Anchor::Corner, &given)?;
         assert_eq!(ranges[Axis::X0].to_string(), "1:1.99:0.01");
         // A picture keeps its zooms.
-        let bar = Picture::at_home("###".parse().expect("a row"))
+        let bar = Source::from(Picture::at_home("###".parse().expect("a row")))
             .with(Parameter::ZoomX, 0.5, &sensor)?
             .with(Parameter::ZoomY, 2.0, &sensor)?;
-        let ranges = default_ranges(&bar.into(), &sensor, Anchor::Centre, &given)?;
+        let ranges = default_ranges(&bar, &sensor, Anchor::Centre, &given)?;
         assert_eq!(
             (
                 ranges[Axis::ZoomX].to_string(),

@@ -214,7 +214,6 @@ pub(super) fn descriptions(model: &Model) -> Vec<Option<Description>> {
     keys.with_min_len(256).map(describe).collect()
 }
 
-
 impl Rounding {
     /// Returns the number of steps that is nearest to a number. Directions of 180° and −180° are the same one, if a
     /// whole number of steps makes a turn.

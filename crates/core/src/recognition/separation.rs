@@ -3,7 +3,7 @@
 
 use crate::figure::Figure;
 use crate::parameter::number::to_decimals;
-use crate::parameter::{Parameter, named};
+use crate::parameter::{Parameter, ParameterError, named};
 use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, Ranges, Reach};
 use crate::progress::Progress;
 use crate::recognition::evaluation::Evaluation;
@@ -140,10 +140,12 @@ impl Separation {
         shape: &NamedShape,
         scale: f64,
     ) -> Result<(NamedShape, GivenRanges), TrainingError> {
+        let refused = |error: GridError| TrainingError::grid(&shape.name, error);
         let mut given = angles_only(self.steps.angles);
         let mut scaled = shape.clone();
         if let Source::Figure(figure) = &shape.source {
-            scaled.source = enlarged(figure, &shape.name, scale)?.into();
+            let figure = enlarged(figure, scale).ok_or(TrainingError::Large)?;
+            scaled.source = figure.map_err(|error| refused(error.into()))?.into();
             return Ok((scaled, given));
         }
         let mut scale = scale;
@@ -156,7 +158,6 @@ impl Separation {
             scaled.source = finer.ok_or(TrainingError::Large)?.into();
             scale = 1.0;
         }
-        let refused = |error: GridError| TrainingError::grid(&shape.name, error);
         for axis in [Axis::ZoomX, Axis::ZoomY] {
             let zoom = shape.source.get(axis.parameter()).unwrap_or(1.0) * scale;
             // The zoom that makes one taxel as large as the largest sensor.
@@ -240,27 +241,17 @@ impl Separation {
     }
 }
 
-/// Multiplies every length of a figure.
-fn enlarged(figure: &Figure, name: &str, scale: f64) -> Result<Figure, TrainingError> {
-    let sensor = Sensor::LARGEST;
-    let with = |figure: Figure, parameter: Parameter, value: f64| {
-        let changed = figure.with(parameter, value, &sensor);
-        changed.map_err(|error| TrainingError::grid(name, error))
-    };
-    let mut scaled = *figure;
-    for parameter in [Parameter::X0, Parameter::Y0, Parameter::Angle] {
-        scaled = with(scaled, parameter, 0.0)?;
-    }
-    for &parameter in figure.kind().sizes().iter().chain(&[Parameter::Thickness]) {
-        if let Some(length) = figure.get(parameter) {
-            let length = to_decimals(length * scale, 9);
-            if length > f64::from(sensor.side()) {
-                return Err(TrainingError::Large);
-            }
-            scaled = with(scaled, parameter, length)?;
-        }
-    }
-    Ok(scaled)
+/// Multiplies every length of a figure. None if it is larger than the largest sensor.
+fn enlarged(figure: &Figure, scale: f64) -> Option<Result<Figure, ParameterError>> {
+    let length = |own| Some(to_decimals(figure.get(own)? * scale, 9));
+    let mut lengths = figure.kind().sizes().iter().chain(&[Parameter::Thickness]);
+    let is_large = |&own: &Parameter| length(own) > Some(Sensor::LARGEST.side().into());
+    (!lengths.any(is_large)).then(|| {
+        Figure::new(figure.kind(), &Sensor::LARGEST, |own| match own {
+            Parameter::X0 | Parameter::Y0 | Parameter::Angle => Some(0.0),
+            own => length(own),
+        })
+    })
 }
 
 #[cfg(test)]

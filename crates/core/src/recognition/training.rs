@@ -3,7 +3,7 @@ use std::fmt;
 use rayon::prelude::*;
 
 use crate::atlas::{ImprintKey, KeyTable};
-use crate::figure::{Figure, FigureKind};
+use crate::figure::{Figure, FigureBuilder, FigureKind};
 use crate::parameter::number::grouped;
 use crate::pose::{
     Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, Ranges, Reach, SensorSides,
@@ -249,34 +249,27 @@ pub fn default_figures() -> Vec<NamedShape> {
     FigureKind::ALL.iter().map(figure).collect()
 }
 
-/// Sizes at which each of the seven figures covers about 30 cells, in the order of [`FigureKind::sizes`].
-const EQUAL: [(FigureKind, &[f64]); 7] = [
-    (FigureKind::Ellipse, &[3.09, 3.09]),
-    (FigureKind::Rectangle, &[6.0, 5.0]),
-    (FigureKind::Triangle, &[8.32]),
-    (FigureKind::Pentagon, &[4.18]),
-    (FigureKind::Hexagon, &[3.4]),
-    (FigureKind::Heptagon, &[2.87]),
-    (FigureKind::Octagon, &[2.49]),
-];
-
 /// Returns the seven figures, each of about 30 cells: only their form tells them apart.
 #[expect(
     clippy::missing_panics_doc,
     reason = "the sizes are constants, and a test reads them all"
 )]
 pub fn equal_figures() -> Vec<NamedShape> {
-    let sensor = Sensor::default();
-    let shape = |(kind, sizes): (FigureKind, &[f64])| {
-        let mut sizes = kind.sizes().iter().zip(sizes);
-        let default = Figure::default_of(kind, &sensor);
-        let figure = sizes.try_fold(default, |figure, (&parameter, &value)| {
-            figure.with(parameter, value, &sensor)
-        });
-        let figure = figure.expect("the sizes in the table are in range");
-        NamedShape::new(kind.name(), figure)
+    let figures = [
+        Figure::ellipse(3.09, 3.09),
+        Figure::rectangle(6.0, 5.0),
+        Figure::triangle(8.32),
+        Figure::pentagon(4.18),
+        Figure::hexagon(3.4),
+        Figure::heptagon(2.87),
+        Figure::octagon(2.49),
+    ];
+    let shape = |figure: FigureBuilder| {
+        let figure = figure.at(4.0, 4.0).on(&Sensor::default());
+        let figure = figure.expect("the sizes are in range");
+        NamedShape::new(figure.kind().name(), figure)
     };
-    EQUAL.map(shape).to_vec()
+    figures.map(shape).to_vec()
 }
 
 /// The number of positions within a cell in each direction: a divisor of 100, so that steps are whole hundredths.
