@@ -199,13 +199,21 @@ impl Plane {
     /// coordinate of an ellipse: 3e-12 was measured at 100 cells, 4e-8 at 10,000 and 3e-4 at a million.
     pub fn coverages(&self) -> Matrix<f64> {
         let mut all = Matrix::filled(self.sensor.size(), 0.0);
+        self.write_coverages(all.values_mut());
+        all
+    }
+
+    /// Writes the shares of [`Self::coverages`] to the cells of the sensor, row by row, without an allocation.
+    pub fn write_coverages(&self, cells: &mut [f64]) {
+        cells.fill(0.0);
         let width = usize::from(self.sensor.columns());
         for row in self.drawn.rows.clone() {
             for (column, area) in self.computed(row) {
-                all.values_mut()[row * width + column] = rounded_coverage(area);
+                if let Some(cell) = cells.get_mut(row * width + column) {
+                    *cell = rounded_coverage(area);
+                }
             }
         }
-        all
     }
 }
 

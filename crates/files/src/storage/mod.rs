@@ -34,6 +34,7 @@ pub use journal::{Journal, Orphan, UNNAMED};
 pub use library::{Expected, Library, LibraryEntry, LoadedShape, ShapeOrigin, TRASH_KEPT};
 pub use library::{LIBRARY_VARIABLE, RememberedFile, below_home, usual_folder};
 pub use models::{
-    FoundModel, ModelCache, ModelChoice, ModelFolder, Models, load_model, model_hash, save_model,
+    FoundModel, ModelCache, ModelChoice, ModelFolder, Models, load_model, load_whole_model,
+    model_hash, save_model,
 };
 pub use sweep_file::{PoseFile, atlas_path, is_poses, load_atlas, write_atlas};

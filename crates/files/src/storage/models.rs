@@ -59,7 +59,7 @@ pub fn load_model(path: &Path) -> Result<Model, ReadError> {
 ///
 /// # Errors
 /// The errors of [`load_model`]; also for a shard, which knows some of the poses only.
-fn load_whole_model(path: &Path) -> Result<Model, ReadError> {
+pub fn load_whole_model(path: &Path) -> Result<Model, ReadError> {
     let model = load_model(path)?;
     let shard = model.shard();
     if shard == Shard::WHOLE {
