@@ -232,7 +232,6 @@ fn cells_are_found_by_the_numbers_in_their_names() {
             "ch10,ch2,ch3,ch1\n4,2,3,1\n",
             sized(2, 2, &[1.0, 2.0, 3.0, 4.0]),
         ),
-        ("S0_0\n5\n6\n", sized(1, 1, &[5.0])),
         ("t,S0_0\n0,5\n1,6\n", sized(1, 1, &[5.0])),
     ] {
         assert_eq!(one(text), expected, "{text}");

@@ -1,11 +1,10 @@
-//! Time while frames come: ticks, silences, the time of each frame, and the pace of a recording that is played.
+//! Time while frames come: ticks, silences, and the pace of a recording that is played.
 
 use std::time::{Duration, Instant};
 
 use taxel_core::frame::Frame;
 
 use crate::acquire::event::Playback;
-use crate::formats::seconds::to_nanoseconds;
 
 /// The time between two ticks, and the longest wait until it is asked again whether more is wanted.
 pub(super) const TICK: Duration = Duration::from_millis(100);
@@ -71,70 +70,6 @@ impl SilenceWatch {
         }
         #[expect(clippy::cast_precision_loss, reason = "a rate for a message")]
         Some(came as f64 / (now - from).as_secs_f64())
-    }
-}
-
-/// How many seconds a source's clock may run ahead of this machine's across a gap: the last frame before the gap may
-/// have come late.
-const LATE: f64 = 1.0;
-
-/// A clock that gives each frame a time: its own, else that of its arrival. Times keep growing even if only some frames
-/// carry one.
-#[derive(Debug, Default)]
-pub(super) struct ArrivalClock {
-    /// The time of the last frame that carried one, else of the first frame, and when it arrived.
-    base: Option<(f64, Instant)>,
-    last: f64,
-    /// Whether the next time that a frame carries may come from another clock.
-    rejoined: bool,
-    /// The seconds added to the frames' own times after the source's clock restarted.
-    shift: Option<f64>,
-}
-
-impl ArrivalClock {
-    /// Notes a gap: the source is read anew from here on.
-    pub(super) fn rejoin(&mut self) {
-        self.rejoined = true;
-    }
-
-    /// The time of a frame that comes now, given the time that it carries, if any; None for a frame without one that
-    /// arrived at some other time.
-    pub(super) fn time(&mut self, own: Option<f64>, arrives: bool, now: Instant) -> Option<f64> {
-        let time = match own {
-            Some(own) => self.continued(own, now),
-            None if arrives => self.arrival(now),
-            None => return None,
-        };
-        self.last = time;
-        Some(time)
-    }
-
-    fn arrival(&mut self, now: Instant) -> f64 {
-        // The first time of a frame's own counts from those of the arrivals before it.
-        self.rejoined |= self.base.is_none();
-        let (base, when) = *self.base.get_or_insert((0.0, now));
-        to_nanoseconds(base + (now - when).as_secs_f64())
-    }
-
-    /// The time of a frame, given its own. After a gap the source's clock may have restarted or been set; then the
-    /// length of the gap is taken from this machine's clock, so that times keep growing.
-    fn continued(&mut self, own: f64, now: Instant) -> f64 {
-        let mut time = self.shifted(own);
-        if std::mem::take(&mut self.rejoined)
-            && let Some((base, when)) = self.base
-        {
-            let continued = base + (now - when).as_secs_f64();
-            if time <= self.last || time > continued + LATE {
-                self.shift = Some(continued - own);
-                time = self.shifted(own);
-            }
-        }
-        self.base = Some((time, now));
-        time
-    }
-
-    fn shifted(&self, own: f64) -> f64 {
-        self.shift.map_or(own, |shift| to_nanoseconds(own + shift))
     }
 }
 
@@ -250,60 +185,6 @@ mod tests {
         assert_eq!(silences(&slow, 60), [(2, 0.0), (6, 0.0), (48, 0.0)]);
         assert_eq!(silences(&[], 9), [(2, 0.0), (10, 5.0)], "then junk comes");
         assert_eq!(silences(&[], 0), [(2, 10.0)], "junk since the beginning");
-    }
-
-    /// The times of frames, each a second after the one before; a gap is before those frames.
-    fn times(frames: [Option<f64>; 4], gap: Option<usize>) -> Vec<f64> {
-        let (mut clock, begun) = (ArrivalClock::default(), Instant::now());
-        let times = frames.iter().enumerate().map(|(index, &own)| {
-            if gap == Some(index) {
-                clock.rejoin();
-            }
-            clock.time(own, true, begun + seconds(index as u64))
-        });
-        times.map(|time| time.expect("a time")).collect()
-    }
-
-    #[test]
-    fn times_go_on_if_only_some_frames_have_one() {
-        let own = Some::<f64>;
-        for (frames, gap, expected) in [
-            ([None, None, None, None], None, [0.0, 1.0, 2.0, 3.0]),
-            ([own(0.0), own(0.5), None, None], None, [0.0, 0.5, 1.5, 2.5]),
-            ([own(0.0), None, own(1.7), None], None, [0.0, 1.0, 1.7, 2.7]),
-            ([None, None, own(0.0), own(0.9)], None, [0.0, 1.0, 2.0, 2.9]),
-            // The source is faster than this machine's clock, as when it is read from a file, or its frames are late.
-            (
-                [own(3.0), None, own(7.0), own(8.0)],
-                None,
-                [3.0, 4.0, 7.0, 8.0],
-            ),
-            (
-                [own(0.0), None, own(0.5), own(0.6)],
-                None,
-                [0.0, 1.0, 0.5, 0.6],
-            ),
-            // After the gap the source's clock has gone on, or begins again.
-            (
-                [own(0.0), own(1.8), own(1.9), own(2.0)],
-                Some(1),
-                [0.0, 1.8, 1.9, 2.0],
-            ),
-            (
-                [own(9.0), own(0.0), own(0.5), None],
-                Some(1),
-                [9.0, 10.0, 10.5, 11.5],
-            ),
-            (
-                [own(50.0), None, own(0.0), own(0.5)],
-                Some(1),
-                [50.0, 51.0, 52.0, 52.5],
-            ),
-        ] {
-            assert_eq!(times(frames, gap), expected, "{frames:?}");
-        }
-        let mut clock = ArrivalClock::default();
-        assert_eq!(clock.time(None, false, Instant::now()), None);
     }
 
     /// The seconds that frames at these times are played at twice the speed.

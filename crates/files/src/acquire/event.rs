@@ -115,8 +115,7 @@ pub enum AcquireEvent<'a> {
         frame: &'a Frame,
         /// The time in seconds: the frame's own, or that of its arrival since the first frame that arrived. None for a
         /// frame without a time of its own that was in a file already, or may have been: standard input or a FIFO that
-        /// is read with [`Playback::Once`] may hold one. After a gap, the time keeps growing, even if the source's own
-        /// clock restarted; if a recording is repeated, times begin again.
+        /// is read with [`Playback::Once`] may hold one. If a recording is repeated, times begin again.
         time: Option<f64>,
     },
     /// An oddity of a recording or a stream.

@@ -223,7 +223,6 @@ fn stream(
             Some(InputEnd::Lost(error)) => return Err(error.into()),
             _ => {
                 result?;
-                session.check_end()?;
                 session.report_end();
                 return Ok(());
             }

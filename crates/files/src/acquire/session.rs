@@ -10,12 +10,13 @@ use std::time::{Duration, Instant, SystemTime};
 use taxel_core::frame::Frame;
 
 use crate::ReadError;
-use crate::acquire::clock::{ArrivalClock, Pace, SilenceWatch, TICK};
+use crate::acquire::clock::{Pace, SilenceWatch, TICK};
 use crate::acquire::event::{AcquireEvent, AcquireOptions, AcquireSink, Playback};
 use crate::acquire::source::FrameSource;
 use crate::formats::recording::{
     ChannelChoice, ChannelInfo, RecordingEvent, RecordingMetadata, StreamCounts, unshaped,
 };
+use crate::formats::seconds::to_nanoseconds;
 
 /// The time without a change after which a file is complete, if it has not grown since it was opened.
 const UNCHANGED: Duration = Duration::from_secs(2);
@@ -63,7 +64,8 @@ pub(super) struct Session<'a, 'b> {
     consumer: &'a mut AcquireSink<'b>,
     ticked: Instant,
     silence: SilenceWatch,
-    times: ArrivalClock,
+    /// When the first frame without a time of its own arrived.
+    first: Option<Instant>,
     /// The pace of a recording; None if its frames are wanted at once.
     pace: Option<Pace>,
     /// The channel that is watched.
@@ -74,8 +76,6 @@ pub(super) struct Session<'a, 'b> {
     growth: Option<Growth>,
     is_repeated: bool,
     has_followed: bool,
-    /// The first wrong frame that was left out of a file.
-    damage: Option<ReadError>,
     /// The error that ends the reading.
     failure: Option<ReadError>,
 }
@@ -98,7 +98,7 @@ impl<'a, 'b> Session<'a, 'b> {
             consumer,
             ticked: now,
             silence: SilenceWatch::new(now),
-            times: ArrivalClock::default(),
+            first: None,
             pace: None,
             channel: ChannelChoice::new(options.channel.as_deref()),
             unshaped: None,
@@ -106,7 +106,6 @@ impl<'a, 'b> Session<'a, 'b> {
             growth: None,
             is_repeated: false,
             has_followed: false,
-            damage: None,
             failure: None,
         }
     }
@@ -187,12 +186,9 @@ impl<'a, 'b> Session<'a, 'b> {
         })
     }
 
-    /// Notes that the source is open, perhaps again: the wait for it was no silence, and its clock may have restarted.
+    /// Notes that the source is open, perhaps again: the wait for it was no silence.
     pub(super) fn begin(&mut self) {
         self.silence.begin(self.counts.bytes, Instant::now());
-        if self.counts.bytes > 0 {
-            self.times.rejoin();
-        }
     }
 
     /// Begins a recording again, if it is to be repeated. A recording without frames is not: it would be read again and
@@ -236,7 +232,7 @@ impl<'a, 'b> Session<'a, 'b> {
             RecordingEvent::Channel(info) => self.take_channel(info),
             RecordingEvent::Frame(frame) => self.take_frame(frame),
             RecordingEvent::Note(note) => self.report(AcquireEvent::Note(note)),
-            RecordingEvent::Damage { error, .. } => self.leave_out(error),
+            RecordingEvent::Damage { .. } => ControlFlow::Continue(()),
         }
     }
 
@@ -273,7 +269,11 @@ impl<'a, 'b> Session<'a, 'b> {
                 .growth
                 .as_ref()
                 .is_some_and(|growth| growth.has_caught_up);
-        let time = self.times.time(frame.time, arrives, Instant::now());
+        let arrival = arrives.then(|| {
+            let now = Instant::now();
+            to_nanoseconds((now - *self.first.get_or_insert(now)).as_secs_f64())
+        });
+        let time = frame.time.or(arrival);
         self.report(AcquireEvent::Frame { frame, time })
     }
 
@@ -292,28 +292,5 @@ impl<'a, 'b> Session<'a, 'b> {
             std::thread::sleep(left.min(TICK));
         }
         ControlFlow::Continue(())
-    }
-
-    /// Leaves out a wrong frame. In a file, it is an error unless there were frames before it and more may come: a program
-    /// that was interrupted continues after a torn line. Whether more comes may be known only at its end.
-    fn leave_out(&mut self, error: &ReadError) -> ControlFlow<()> {
-        let Some(growth) = self.growth.as_mut().filter(|growth| !growth.is_endless) else {
-            return ControlFlow::Continue(());
-        };
-        if self.counts.frames > 0 && growth.may_go_on() {
-            self.damage.get_or_insert_with(|| error.clone());
-            return ControlFlow::Continue(());
-        }
-        self.failure = Some(error.clone());
-        ControlFlow::Break(())
-    }
-
-    /// The error of a file that has ended without growing: then a wrong frame is damage.
-    pub(super) fn check_end(&mut self) -> Result<(), ReadError> {
-        let has_grown = self.growth.as_mut().is_some_and(Growth::has_grown);
-        self.damage
-            .take()
-            .filter(|_| !has_grown)
-            .map_or(Ok(()), Err)
     }
 }

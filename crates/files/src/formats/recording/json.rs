@@ -2,25 +2,23 @@
 //! `NaN` for a missing cell.
 //! ```text
 //! {"t": 0.00, "frame": [[0, 12], [null, 3]]}
-//! {"t": 0.05, "frame": [0, 13, null, 4], "label": 7}
+//! {"t": 0.05, "frame": [[0, 13], [null, 4]], "label": 7}
 //! {"t": 0.05, "frame": [[5, 6], [7, 8]], "channel": "left"}
 //! ```
-//! A frame is a list of rows, or a list of cells if rows and columns are given by the caller. `t` or `time` is in
-//! seconds and counts from the first one. `label` is a whole number or a text, `channel` the name or the number of one of
+//! A frame is a list of rows. `t` or `time` is in seconds and counts from the first one. `label` is a whole number or a text, `channel` the name or the number of one of
 //! several sensors; other keys are ignored. All frames of a channel have the same size.
 
 use std::collections::BTreeMap;
 use std::io::BufRead;
-use std::slice;
 
 use serde::Deserialize;
 use taxel_core::frame::{Frame, FrameSize, LARGEST_VALUE, Label};
 use taxel_core::parameter::number::counted;
 
 use crate::error::ReadError;
-use crate::formats::job::too_large;
+use crate::formats::job::{FrameRows, too_large};
 use crate::formats::json::of_line_with_nan;
-use crate::formats::recording::error::{foreign, unshaped};
+use crate::formats::recording::error::foreign;
 use crate::formats::recording::event::{ChannelInfo, LONGEST_NAME, ReadOptions, Sink, Stop};
 use crate::formats::recording::size::{changed, frame_size, other_than};
 use crate::formats::recording::text::TextLines;
@@ -29,18 +27,11 @@ use crate::formats::recording::time::Time;
 #[derive(Deserialize)]
 #[serde(expecting = "an object with a key \"frame\"")]
 struct FrameLine {
-    frame: Vec<Item>,
+    frame: FrameRows,
     #[serde(alias = "time")]
     t: Option<f64>,
     label: Option<Name>,
     channel: Option<Name>,
-}
-
-#[derive(Deserialize)]
-#[serde(untagged, expecting = "expected a number, null, or a row of these")]
-enum Item {
-    Cell(Option<f64>),
-    Row(Vec<Option<f64>>),
 }
 
 #[derive(Deserialize)]
@@ -51,15 +42,6 @@ enum Item {
 enum Name {
     Number(i64),
     Text(String),
-}
-
-impl Item {
-    fn cells(&self) -> &[Option<f64>] {
-        match self {
-            Self::Cell(cell) => slice::from_ref(cell),
-            Self::Row(row) => row,
-        }
-    }
 }
 
 impl Name {
@@ -130,7 +112,7 @@ impl FrameLine {
             return Err(ReadError::new(message));
         }
         frame.reset(line.size(options.size)?);
-        let cells = line.frame.iter().flat_map(Item::cells);
+        let cells = line.frame.iter().flatten();
         for (slot, cell) in frame.values_mut().iter_mut().zip(cells) {
             *slot = cell.unwrap_or(f64::NAN);
             if slot.abs() > LARGEST_VALUE {
@@ -146,35 +128,19 @@ impl FrameLine {
 
     /// The rows and columns; `asked` are those that were given.
     fn size(&self, asked: Option<FrameSize>) -> Result<FrameSize, ReadError> {
-        let is_row = |item: &&Item| matches!(item, Item::Row(_));
-        let rows = self.frame.iter().filter(is_row).count();
-        let first = self.frame.first().map_or(0, |item| item.cells().len());
-        let message = match (self.frame.len(), asked) {
-            (0, _) => "\"frame\" is empty, expected rows of values".to_owned(),
-            (cells, None) if rows == 0 => return Err(unshaped(cells as u64, None)),
-            (cells, Some(size)) if rows == 0 && cells == size.cells() => return Ok(size),
-            (cells, Some(size)) if rows == 0 => {
-                let found = counted(cells as u64, "value");
-                format!("found {found}, expected {}", size.cells())
+        let (rows, first) = (self.frame.len(), self.frame.first().map_or(0, Vec::len));
+        let other = self.frame.iter().position(|row| row.len() != first);
+        let message = match (other, frame_size(first, rows), asked) {
+            _ if rows == 0 => "\"frame\" is empty, expected rows of values".to_owned(),
+            (Some(row), ..) => {
+                let found = counted(self.frame[row].len() as u64, "value");
+                format!("row {} has {found}, expected {first}", row + 1)
             }
-            (items, _) if rows < items => "rows and numbers in one list".to_owned(),
-            _ => {
-                let mut lengths = self.frame.iter().map(|item| item.cells().len());
-                if let Some(row) = lengths.position(|length| length != first) {
-                    let found = counted(self.frame[row].cells().len() as u64, "value");
-                    let row = row + 1;
-                    return Err(ReadError::new(format!(
-                        "row {row} has {found}, expected {first}"
-                    )));
-                }
-                match (frame_size(first, rows), asked) {
-                    (Some(size), Some(asked)) if size != asked => other_than(size, asked),
-                    (Some(size), _) => return Ok(size),
-                    (None, _) => {
-                        let rows = counted(rows as u64, "row");
-                        format!("{rows} of {first}, expected 1 to 512 of each")
-                    }
-                }
+            (_, Some(size), Some(asked)) if size != asked => other_than(size, asked),
+            (_, Some(size), _) => return Ok(size),
+            (_, None, _) => {
+                let rows = counted(rows as u64, "row");
+                format!("{rows} of {first}, expected 1 to 512 of each")
             }
         };
         Err(ReadError::new(message))
@@ -211,14 +177,13 @@ mod tests {
         assert!(found("{\"frame\":[[null]]}").expect("a cell")[0].0[0].is_nan());
         for (frame, expected) in [
             ("[[1,2],[3]]", "line 1: row 2 has 1 value, expected 2"),
-            ("[[1],2]", "line 1: rows and numbers in one list"),
             (
-                "[[[1]]]",
-                "line 1, column 16: expected a number, null, or a row of these",
+                "[1,2]",
+                "line 1, column 11: invalid type: integer `1`, expected a sequence",
             ),
             (
                 "[[\"1\"]]",
-                "line 1, column 16: expected a number, null, or a row of these",
+                "line 1, column 14: invalid type: string \"1\", expected f64",
             ),
             ("[]", "line 1: \"frame\" is empty, expected rows of values"),
             (

@@ -74,12 +74,11 @@ struct Channel {
 }
 
 /// Whether a text begins like a table: with a line of two numbers or more that are at least half of its fields; or with
-/// a number, if the rows and columns are given or the name of a single cell is above it.
+/// a number, if the rows and columns are given.
 pub(super) fn sniff(head: &[u8], options: &ReadOptions, is_all: bool) -> bool {
     let end = head.iter().rposition(|&byte| byte == b'\n').unwrap_or(0);
     let whole = if is_all { head } else { &head[..end] };
     let lines = whole.split(|&byte| byte == b'\n');
-    let mut is_named = false;
     // A stream that was joined anywhere begins with the rest of a line.
     lines.skip(usize::from(options.is_joined)).any(|line| {
         let (_, line) = bare(line);
@@ -96,8 +95,7 @@ pub(super) fn sniff(head: &[u8], options: &ReadOptions, is_all: bool) -> bool {
         }
         // Spreadsheets fill lines of words, and empty ones, with separators.
         let least = if numbers == fields { 1 } else { 2 };
-        let is_one = fields == 1 && numbers == 1 && (is_named || options.size.is_some());
-        is_named = fields == 1 && is_grid_name(line);
+        let is_one = fields == 1 && numbers == 1 && options.size.is_some();
         is_one || numbers > 1 && filled >= least && 2 * numbers >= fields
     })
 }
@@ -110,10 +108,6 @@ pub(super) fn is_column(head: &[u8]) -> bool {
         .peekable();
     let is_number = |line: &[u8]| Separator::Spaces.is_numeric(line.trim_ascii());
     lines.peek().is_some() && lines.all(is_number)
-}
-
-fn is_grid_name(line: &[u8]) -> bool {
-    CellName::of(&text(line.trim_ascii())).is_some_and(|cell| cell.numbers.len() == 2)
 }
 
 /// Removes what is no part of the numbers of a line: the time that a serial monitor puts before them, `12:00:01.100 -> `,
