@@ -29,8 +29,6 @@ pub mod explain;
 
 pub mod help;
 
-pub mod history;
-
 pub mod compare;
 
 pub mod grid;

@@ -1,9 +1,6 @@
-//! The user's files: opening, writing, completion; and the commands that are remembered.
+//! The user's files: opening, writing, completion.
 
-use taxel::tui::jobs::Jobs;
-use taxel_files::storage::Library;
-
-use crate::session::{press, session, shows, started, then};
+use crate::session::{press, session, shows, then};
 
 fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("there is a folder for temporary files")
@@ -112,19 +109,4 @@ fn paths_are_completed() {
     shows(&session, &["mask "]);
     press(&mut session, "o<Tab><Enter>");
     shows(&session, &["mask one.csv opened", "NA 1 in all"]);
-}
-
-#[test]
-fn the_prompt_remembers_lines_between_runs() {
-    let folder = folder();
-    let world = || Jobs::new(Library::open(folder.path().to_owned()));
-    let _first = started(world(), ":figure hexagon --side 3<Enter>");
-    let mut second = started(world(), ":");
-    shows(&second, &["figure hexagon --side 3", "earlier"]);
-    then(
-        &mut second,
-        "<Down>",
-        &["> figure hexagon --side 3", ":figure hexagon --side 3"],
-    );
-    then(&mut second, "<Enter>", &["hexagon side 3.00"]);
 }

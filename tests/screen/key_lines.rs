@@ -32,24 +32,7 @@ fn click(session: &mut Session, text: &str) {
 #[test]
 fn keys_that_can_do_nothing_at_the_moment_are_not_shown() {
     for (keys, has, lacks) in [
-        ("?", "/ search", "n N match"),
-        ("?/zoom<CR>", "n N match", "nothing"),
         ("lzzz", "/ new search", "choose"),
-        (
-            "f<CR>:explore --angle 0<CR>",
-            "Enter to matrix  / filter",
-            "nothing",
-        ),
-        (
-            "f<CR>:explore --angle 0<CR>/na>=999<CR>",
-            "/ filter",
-            "to matrix",
-        ),
-        (
-            "f<CR>:explore --angle 0<CR>/na>=999<CR>",
-            "j jump",
-            "compare",
-        ),
         // The map shows no descriptor.
         ("f<CR>:explore --angle 0<CR>4", "+ - zoom", "descriptor"),
     ] {
@@ -74,10 +57,7 @@ fn keys_that_can_do_nothing_at_the_moment_are_not_shown() {
         assert_eq!(last, expected, "{keys}");
     }
     shows("f<CR>", &["c coverage  g hold"]);
-    shows(
-        "r",
-        &["t touch   o O other model   v confusion   Esc close   ? help\n"],
-    );
+    shows("r", &["t touch   Esc close   ? help\n"]);
 }
 
 #[test]

@@ -374,10 +374,7 @@ fn an_imprint_from_a_frame_is_unsaved_work() {
     then(&mut page, "q", &[]);
     hides(&page, &["not saved"]);
     let mut page = watched(6, "+<Enter>nq");
-    shows(
-        &page,
-        &["An earlier drawing is not saved; the history (H) has it."],
-    );
+    shows(&page, &["1 earlier shape is not saved; u goes back."]);
     // Back on the page, nothing has been taken yet.
     then(&mut page, "<Esc>uq", &["The imprint is not saved"]);
 }
@@ -528,7 +525,7 @@ fn a_reopened_page_uses_the_model_that_it_shows() {
     shows(&page, &["frame 4", "shape      ", "taxels differ"]);
     hides(&page, &["…", "training or"]);
     // The page does not name shapes with a model that was given up, either.
-    then(&mut page, "oooo<Esc>ww", &[]);
+    then(&mut page, "o<Esc>ww", &[]);
     page.frames(6);
     hides(&page, &["differ"]);
 }

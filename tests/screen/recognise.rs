@@ -1,4 +1,4 @@
-//! Recognition on the screen: stored models, the cache, stopping work, and what is remembered.
+//! Recognition on the screen: stored models, the cache, and stopping work.
 
 use std::fs;
 use std::path::Path;
@@ -77,9 +77,9 @@ fn a_model_that_cannot_be_read_does_not_block_the_next_one() {
     let broken = library.folder().join("models/broken.npz");
     fs::write(broken, "junk").expect("written");
     let world = Jobs::new(library).with_model_cache(Some(models()));
-    let mut session = started(world, ":recognise shapes<Enter>o");
+    let mut session = started(world, ":recognise shapes<Enter>:recognise broken<Enter>");
     shows(&session, &["broken.npz: ", "Recognise: model shapes"]);
-    press(&mut session, "o");
+    press(&mut session, "<Esc>:recognise my parts<Enter>");
     shows(&session, &["Recognise: model my parts"]);
 }
 
@@ -88,7 +88,7 @@ fn beside(keys: &str) -> Beside {
 }
 
 #[test]
-fn a_stored_model_is_completed_used_and_remembered() {
+fn a_stored_model_is_completed_and_used() {
     let folder = tempfile::tempdir().expect("a folder");
     let library = with_model(folder.path());
     let world = || Jobs::new(library.clone()).with_model_cache(Some(models()));
@@ -106,19 +106,13 @@ fn a_stored_model_is_completed_used_and_remembered() {
     // Two taxels that no shape of the model leaves.
     press(&mut session, "n<Space><Right><Right><Space>");
     shows(&session, &["none of these: nearest ", "if it were one"]);
-    shows(&begin("r"), &["Recognise: model my parts"]);
-    // When another model is chosen, that one is remembered.
-    begin("rO");
-    shows(&begin("r"), &["Recognise: model shapes"]);
     shows(&begin(":recognise <Tab>"), &["figures-30", "my parts"]);
-    // A file is named by its path and not remembered, because the next run may start in another folder.
     let models = ModelFolder::of(library.folder());
     let file = folder.path().join("parts of today.npz");
     let stored = models.find(&Name::new("my parts").expect("a name"));
     fs::copy(stored.expect("it is there"), &file).expect("copied");
     let by_path = format!(":recognise {}<Enter>", file.display());
     shows(&begin(&by_path), &["Recognise: model parts of today.npz"]);
-    shows(&begin("r"), &["Recognise: model shapes"]);
     let missing = ":recognise ./nowhere.npz<Enter>";
     shows(
         &begin(missing),
@@ -132,13 +126,12 @@ fn a_stored_model_is_completed_used_and_remembered() {
     );
     // A file in the working folder is named without a path; this one contains no model.
     shows(&begin(":recognise Cargo.toml<Enter>"), &["Cargo.toml: "]);
-    // A model that does not exist is refused with a list of the others, and not remembered.
+    // A model that does not exist is refused with a list of the others.
     let all = "no model or file named \"nonsense\"; models: library, figures, figures-30,";
     shows(
         &begin(":recognise nonsense<Enter>"),
         &[all, "shapes, my parts"],
     );
-    shows(&begin("r"), &["Recognise: model shapes"]);
 }
 
 #[test]
@@ -197,19 +190,6 @@ fn a_threshold_that_differs_from_that_of_the_model_is_pointed_out() {
 }
 
 #[test]
-fn a_command_that_needs_a_model_is_carried_out_once_there_is_one() {
-    shows(&session(":confusion<Enter>"), &["Confusion: model library"]);
-    let mut program = beside(":confusion<Enter>");
-    let first = "a model is prepared first";
-    shows(&program.session, &["Recognise: model library", first]);
-    program.until("Confusion: model library");
-    // The user does something else by then.
-    let mut program = beside(":confusion<Enter>:");
-    program.until("certain 99.8 %");
-    hides(&program.session, &["Confusion"]);
-}
-
-#[test]
 fn escape_stops_a_training() {
     let mut program = beside(":recognise shapes<Enter>");
     shows(&program.session, &["being trained; Esc stops"]);
@@ -222,11 +202,13 @@ fn escape_stops_a_training() {
 }
 
 #[test]
-fn keys_that_need_a_model_wait_for_it() {
-    for (key, text) in [("v", "Confusion: "), ("t", "a random touch of ")] {
-        let mut program = beside(&format!("f<Enter>r{key}"));
-        shows(&program.session, &["a model is prepared first"]);
-        program.until(text);
-        hides(&program.session, &["prepared first"]);
-    }
+fn a_random_touch_waits_for_its_model() {
+    let mut program = beside("f<Enter>rt");
+    shows(&program.session, &["a model is prepared first"]);
+    program.until("a random touch of ");
+    hides(&program.session, &["prepared first"]);
+    // The user does something else by then.
+    let mut program = beside("rt:");
+    program.until("certain 99.8 %");
+    hides(&program.session, &["a random touch of "]);
 }

@@ -7,7 +7,7 @@ use taxel_core::sensor::Sensor;
 use crate::session::{hides, on, press, shows, sized, world};
 
 /// Keys that open the screens.
-const SCREENS: [&str; 22] = [
+const SCREENS: [&str; 19] = [
     "",
     "f",
     "fh<Tab>x",
@@ -26,9 +26,6 @@ const SCREENS: [&str; 22] = [
     "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>3",
     "fr<Enter>:explore --x0 0:16:0.1 --y0 0:16:0.1 --angle 0<Enter>4<99x:Right>",
     "fr<Enter>:explore --x0 0:16:0.1 --y0 0:16:0.1 --angle 0<Enter>4+",
-    "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>5",
-    "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>6",
-    "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>/na>18 x",
     "fr<Enter>:explore --x0 5 --y0 5 --angle 0<Enter>x/tmp",
 ];
 
@@ -128,9 +125,6 @@ fn ascii_screens_are_ascii() {
         "fr<Enter>e<Enter>3<End>",
         "fr<Enter>e<Enter>4>",
         "fr<Enter>e<Enter>4+++>",
-        "fr<Enter>e<Enter>5",
-        "fr<Enter>e<Enter>6",
-        "fr<Enter>e<Enter>/na=9 x",
         "fr<Enter>e<Enter>x",
     ] {
         let screen = sized((80, 24), true, keys).screen();

@@ -26,9 +26,8 @@ fn settings(styles: bool, json: bool) -> ScriptOptions {
 
 fn output(script: &str, json: bool) -> Result<String, ScriptFailure> {
     let settings = settings(true, json);
-    let (mut printed, mut world) = (String::new(), world());
-    world.remembers = false;
-    run(script, &[], &settings, world, &mut |shown: Shown<'_>| {
+    let mut printed = String::new();
+    run(script, &[], &settings, world(), &mut |shown: Shown<'_>| {
         printed.push_str(shown.text);
         ControlFlow::Continue(())
     })
@@ -111,22 +110,10 @@ fn failed_expectations_and_malformed_commands_are_reported_with_their_line() {
             "Keys f\nExpect /zzz/",
             "line 2: no /zzz/ on the screen\n  | Enter",
         ),
-        (
-            "ExpectAt 0,0 \"x\"",
-            "line 1: at 0,0 there is \"n\", expected \"x\"",
-        ),
-        (
-            "ExpectStyle 0,0 reverse",
-            "line 1: at 0,0 the style is bold",
-        ),
-        (
-            "ExpectStyle 200,0 dim",
-            "line 1: 200,0 is not on the screen",
-        ),
         ("Quit", "line 1: the program has not ended"),
         ("State /nowhere", "line 1: the state has no \"/nowhere\""),
         (
-            "Signal TERM\nResize 10x10",
+            "Keys q\nResize 10x10",
             "line 2: the program had already ended",
         ),
         ("\n\nFly", "line 3: \"Fly\" is unknown, expected one of"),
@@ -272,7 +259,6 @@ fn a_whole_screen_is_expected() {
 #[test]
 fn wide_characters_cover_two_columns() {
     let script = "Keys <Space>sfoobar<Enter>s<C-u>\nType \"字字\"\nKeys <Enter>\n\
-                  Expect /saved as 字字/\nExpect /(?m)0.50 · 字字$/\n\
-                  ExpectAt 27,1 \"字字\"\nExpectAt 29,1 \"字\"";
+                  Expect /saved as 字字/\nExpect /(?m)0.50 · 字字$/";
     output(script, false).expect("it holds");
 }

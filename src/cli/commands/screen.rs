@@ -93,13 +93,11 @@ pub(crate) fn open(
         // A different seed each time.
         seed: RandomState::new().hash_one(0),
     };
-    let mut world = Jobs::new(cx.shelf.library()?).with_model_cache(ModelCache::of_user());
+    let world = Jobs::new(cx.shelf.library()?).with_model_cache(ModelCache::of_user());
     let mut app = App::new(&options);
     app.keymap = settings.keymap().clone();
     app.watch_settings = settings.watch_request();
     let first = watched.map(|request| Message::Live(LiveMessage::Watch(Arc::new(request))));
-    // What earlier runs remembered is not in a record.
-    world.remembers = record.is_none();
     let record = record.map(|path| Record::begin(&path, &options));
     let mut record = record.transpose()?;
     let mut watch = |input: &Input| {

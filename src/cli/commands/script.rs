@@ -36,10 +36,9 @@ const EXAMPLES: &str = r#"One command per line; positions are column,row of the 
   Resize 100x30       Seed 7 (of random touches)
   Keys f<Right><Tab>4.00<Enter>           <lt> for '<'; <3x:Down> three times
   Type "text"         Paste "1.5"         Click 12,5   Click "Figure"
-  Drag 3,4 9,9        Scroll 12,5 -3      Signal HUP   Wait   Quit
+  Drag 3,4 9,9        Scroll 12,5 -3      Wait   Quit
   Screen [name]       State [json-pointer]
-  Expect /re/         ExpectNot /re/      ExpectAt 3,10 "text"
-  ExpectScreen FILE   ExpectStyle 3,10 reverse
+  Expect /re/         ExpectNot /re/      ExpectScreen FILE
   Source touch.csv    Frames 3  (watch a recording, and take its next 3 frames)
 Quit checks that the program has ended. Source fails if the file cannot be
 read; Frames fails if there are too few frames. ExpectScreen compares the screen

@@ -1,6 +1,6 @@
 //! Changes of the document: touching, moving, turning, zooming, undo and redo.
 //!
-//! Each change calls `change`, `begin`, `resume`, `travel` or `go_to`, which bring everything that depends on the
+//! Each change calls `change`, `begin`, `resume` or `travel`, which bring everything that depends on the
 //! document back into range, such as the chosen region. All but `change` let a held shape go and end a drag: both
 //! belong to the document that they began on. The cursor stays where it was put; [`App::cursor`] keeps it on the
 //! sensor.
@@ -56,7 +56,7 @@ pub(in crate::tui) fn begin(app: &mut App, origin: DocumentOrigin, document: Doc
     settle_elsewhere(app);
 }
 
-/// `brought_by` is the name of the step in the history.
+/// `brought_by` is the name of the step, for undo.
 pub(in crate::tui) fn begin_drawn(
     app: &mut App,
     sensor: Sensor,
@@ -70,11 +70,6 @@ pub(in crate::tui) fn begin_drawn(
 
 pub(in crate::tui) fn resume(app: &mut App, origin: DocumentOrigin, document: Document) {
     app.history.resume(document, origin);
-    settle_elsewhere(app);
-}
-
-pub(in crate::tui) fn go_to(app: &mut App, step: usize) {
-    app.history.go_to(step);
     settle_elsewhere(app);
 }
 

@@ -229,9 +229,9 @@ impl History {
     }
 
     /// The region that was chosen there is chosen again; if none was, the choice stays.
-    pub fn go_to(&mut self, step: usize) {
+    fn go_to(&mut self, state: usize) {
         let chosen = self.chosen();
-        self.present = step.min(self.states.len() - 1);
+        self.present = state;
         self.goes_on = false;
         let state = &mut self.states[self.present];
         state.chosen = state.chosen.or(chosen);
@@ -245,21 +245,9 @@ impl History {
         brought_by.unwrap_or_else(|| difference(&from.document, &to.document))
     }
 
-    /// What brought the oldest state and each later one, in words, and the number of the present one.
-    pub fn steps(&self) -> (Vec<String>, usize) {
-        let start = self.origins[self.states[0].origin].brought_by.as_deref();
-        let steps = (1..self.states.len()).map(|state| self.step(state - 1));
-        let rows = std::iter::once(start.unwrap_or("the start").to_owned()).chain(steps);
-        (rows.collect(), self.present)
-    }
-
     pub fn before(&self) -> Option<&Document> {
         let mut past = self.until_now().iter().rev().map(|state| &state.document);
         past.find(|document| *document != self.present())
-    }
-
-    pub fn after(&self, step: usize) -> Option<&Document> {
-        self.states.get(step).map(|state| &state.document)
     }
 }
 

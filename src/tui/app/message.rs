@@ -45,7 +45,6 @@ pub enum Message {
     Hold,
     PutBack,
     Compare,
-    History,
     Nudge(Arrow),
     Move(f64, f64),
     /// Turn the shape clockwise as seen, by degrees.
@@ -70,9 +69,6 @@ pub enum Message {
     ScrollTo(Endpoint),
     /// Select a row of a list, by its number from 0.
     Select(usize),
-    Search,
-    /// Go to the match this many further on; negative goes back. The first follows the last.
-    Match(i8),
     Sensor,
     Zoom(i8),
     Mouse(Mouse),

@@ -53,9 +53,8 @@ impl Question {
         };
         let save = self.saves_first.then_some("save first");
         for (answer, meaning) in [(&action::SAVE, save), (&action::CANCEL, self.left)] {
-            let key = key(answer);
-            if let Some(meaning) = meaning.filter(|_| !key.is_empty()) {
-                answers += &format!(", {key}: {meaning}");
+            if let Some(meaning) = meaning {
+                answers += &format!(", {}: {meaning}", key(answer));
             }
         }
         format!("({answers})")

@@ -89,37 +89,16 @@ fn losses(app: &App) -> Option<(String, &'static str)> {
     let lost = lost.filter(|document| !app.is_being_saved(document));
     let (present, earlier): (Vec<_>, Vec<_>) =
         lost.partition(|document| *document == app.history.present());
-    let kind = |one: &Document| one.source.as_ref().map_or("drawing", Source::kind_name);
-    let (what, has, lose) = match (&present[..], &earlier[..]) {
-        ([], []) => return None,
-        (_, []) => return Some(("The imprint is not saved".to_owned(), "lose it")),
-        ([], [one]) => {
-            let what = format!("An earlier {} is", kind(one));
-            (what, "it".to_owned(), "lose it")
-        }
-        (_, [one]) => {
-            let what = format!("The imprint and an earlier {} are", kind(one));
-            (what, format!("the {}", kind(one)), "lose them")
-        }
-        (present, earlier) => {
-            let imprint = if present.is_empty() {
-                ""
-            } else {
-                "The imprint and "
-            };
-            let count = counted(earlier.len() as u64, "earlier shape");
-            (
-                format!("{imprint}{count} are"),
-                "them".to_owned(),
-                "lose them",
-            )
-        }
+    let shapes = counted(earlier.len() as u64, "earlier shape");
+    let (what, lose) = match (present.is_empty(), earlier.len()) {
+        (true, 0) => return None,
+        (false, 0) => return Some(("The imprint is not saved".to_owned(), "lose it")),
+        (true, 1) => (format!("{shapes} is"), "lose it"),
+        (true, _) => (format!("{shapes} are"), "lose them"),
+        (false, _) => (format!("The imprint and {shapes} are"), "lose them"),
     };
-    let history = app.key_of(&action::HISTORY);
-    Some((
-        format!("{what} not saved; the history ({history}) has {has}"),
-        lose,
-    ))
+    let undo = app.key_of(&action::UNDO);
+    Some((format!("{what} not saved; {undo} goes back"), lose))
 }
 
 /// Offers the last unsaved work of programs that crashed, if there is any. No answer keeps it for the next start. While

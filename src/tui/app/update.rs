@@ -119,7 +119,7 @@ fn on_page(app: &mut App, mut page: Box<dyn Page>, message: &Message) {
     }
 }
 
-/// Names the key that lists all keys or, in that list, the keys that scroll and search.
+/// Names the key that lists all keys or, in that list, the keys that scroll.
 fn unknown(app: &mut App, key: Key) {
     if key == Key::Esc
         && let Some(what) = app.jobs.give_up_reading(app.pages.len())
@@ -139,8 +139,7 @@ fn unknown(app: &mut App, key: Key) {
             &action::SCREEN_UP,
             &action::SCREEN_DOWN,
         ];
-        let scrolling = scrolling.map(label).join(" ");
-        format!("{scrolling} scroll, {} searches", label(&action::SEARCH))
+        format!("{} scroll", scrolling.map(label).join(" "))
     } else {
         format!("{} lists the keys", label(&action::HELP))
     };

@@ -39,7 +39,22 @@ pub fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
         too_small(theme, buffer, area);
         return None;
     };
-    menu::draw(theme, buffer, &menu::menu(app, panes.menu));
+    let items = menu::menu(app, panes.menu);
+    menu::draw(theme, buffer, &items);
+    let width = u16::MAX;
+    let is_cut = items.len()
+        < menu::menu(
+            app,
+            Rect {
+                width,
+                ..panes.menu
+            },
+        )
+        .len();
+    if let Some(last) = items.last().filter(|_| is_cut) {
+        let rest = right_of(panes.menu, last.area.right() + 1);
+        write::text(buffer, rest, theme, "…", Role::Quiet);
+    }
     let (page, place) = (app.pane(), app.pane().map(Page::place));
     if !matches!(place, Some(Place::Screen | Place::Body)) {
         write::text(buffer, panes.title, theme, &title(app), Role::Text);

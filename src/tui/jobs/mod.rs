@@ -25,11 +25,9 @@ use std::time::{Duration, Instant};
 
 use taxel_core::lock::try_locked;
 use taxel_core::progress::{Progress, stop_if};
+use taxel_files::formats::StoredShape;
 use taxel_files::formats::file::system_reason;
-use taxel_files::formats::{Name, StoredShape};
-use taxel_files::storage::{
-    Expected, Journal, Library, ModelCache, ModelChoice, Models, Orphan, RememberedFile,
-};
+use taxel_files::storage::{Expected, Journal, Library, ModelCache, Models, Orphan};
 use tempfile::TempDir;
 
 use crate::tui::app::unsaved::UnsavedWork;
@@ -126,9 +124,6 @@ pub struct Jobs {
     pub(crate) orphans: Vec<Orphan>,
     /// Offered work that was taken: it is removed from its place once it is in the journal of this program.
     pub(crate) adopted: Vec<Orphan>,
-    /// Whether commands and the recognised set are remembered from run to run. A run that is recorded as a script does
-    /// the same again only without.
-    pub remembers: bool,
     pub(crate) models: Models,
     pub(crate) sources: Sources,
     /// The disk's thread, once something was asked of it.
@@ -159,7 +154,6 @@ impl Jobs {
         let orphans = Orphan::all(&library);
         let mut jobs = Self::for_script(library);
         jobs.orphans = orphans;
-        jobs.remembers = true;
         jobs.keeps_unsaved = true;
         jobs
     }
@@ -175,7 +169,6 @@ impl Jobs {
             access: Arc::default(),
             orphans: Vec::new(),
             adopted: Vec::new(),
-            remembers: false,
             models: Models {
                 library: library.clone(),
                 cache: None,
@@ -439,31 +432,6 @@ impl Jobs {
             "the disk"
         };
         (first.since.elapsed() >= SLOW).then(|| format!("{}: waiting for {who}{end}", first.what))
-    }
-
-    /// Gives the program what earlier runs remembered.
-    pub(crate) fn remind(app: &mut App) {
-        if !app.jobs.remembers {
-            return;
-        }
-        app.commands = RememberedFile::commands(&app.jobs.library).read();
-        let mut set = RememberedFile::recognised_set(&app.jobs.library).read();
-        if let Some(Ok(name)) = set.pop().map(|name| Name::new(&name)) {
-            app.recognition.choice = ModelChoice::from_name(name);
-        }
-    }
-
-    /// Remembers a line for the next run, unless it is the last one already.
-    pub(crate) fn remember(&mut self, file: fn(&Library) -> RememberedFile, line: String) {
-        if self.remembers {
-            self.disk("Remembering it", move |library| {
-                let file = file(library);
-                if file.read().last() != Some(&line) {
-                    file.add(vec![line]);
-                }
-                answer(|_| {})
-            });
-        }
     }
 
     /// Keeps this work in the journal, in place of what was kept before.

@@ -1,7 +1,6 @@
 //! The actions: what a user can ask for by a key, each with its name in a settings file.
 //!
-//! [`crate::tui::keys::default_keys`] gives them keys, with a hint and a line of help for each place. Those of the
-//! place work after `:` as well.
+//! [`crate::tui::keys::default_keys`] gives them keys, with a hint and a line of help for each place.
 
 use crate::tui::app::{
     Copied, Endpoint, Erase, Layer,
@@ -11,7 +10,7 @@ use crate::tui::explore::ExploreMessage::{self, Angle, Columns, Feature, NextTab
 use crate::tui::explore::ExploreTab;
 use crate::tui::keys::{Arrow, Context};
 use crate::tui::live::LiveMessage::{self, Threshold, Window};
-use crate::tui::recognise::RecogniseMessage::{self, NextModel};
+use crate::tui::recognise::RecogniseMessage;
 
 #[derive(Debug, PartialEq)]
 pub struct Action {
@@ -49,7 +48,6 @@ pub static RECTANGLE: Action = action("rectangle", Message::Layer(Layer::Rectang
 pub static HOLD: Action = action("hold", Message::Hold);
 pub static PUT_BACK: Action = action("put-back", Message::PutBack);
 pub static COMPARE: Action = action("compare", Message::Compare);
-pub static HISTORY: Action = action("history", Message::History);
 pub static DRAW: Action = action("draw", Message::Draw);
 pub static EXPLAIN: Action = action("explain", Message::Explain);
 pub static NUDGE_LEFT: Action = action("nudge-left", Message::Nudge(Arrow::Left));
@@ -96,9 +94,6 @@ pub static SCREEN_UP: Action = action("screen-up", Message::ScrollScreen(-1));
 pub static SCREEN_DOWN: Action = action("screen-down", Message::ScrollScreen(1));
 pub static FIRST: Action = action("first", Message::ScrollTo(Endpoint::First));
 pub static LAST: Action = action("last", Message::ScrollTo(Endpoint::Last));
-pub static SEARCH: Action = action("search", Message::Search);
-pub static NEXT_MATCH: Action = action("next-match", Message::Match(1));
-pub static PREVIOUS_MATCH: Action = action("previous-match", Message::Match(-1));
 pub static EXPLORE: Action = action("explore", Explore(ExploreMessage::Open));
 pub static RANGES: Action = action("ranges", Explore(ExploreMessage::Ranges));
 pub static STOP: Action = action("stop", Explore(ExploreMessage::Stop));
@@ -123,9 +118,6 @@ pub static RECOGNISE: Action = action("recognise", Recognise(RecogniseMessage::O
 pub static RANDOM_TOUCH: Action = action("random-touch", Recognise(RecogniseMessage::Touch));
 pub static KEEP: Action = action("keep", Recognise(RecogniseMessage::Keep));
 pub static FORGET: Action = action("forget", Recognise(RecogniseMessage::Forget));
-pub static NEXT_MODEL: Action = action("next-model", Recognise(NextModel(1)));
-pub static PREVIOUS_MODEL: Action = action("previous-model", Recognise(NextModel(-1)));
-pub static CONFUSION: Action = action("confusion", Recognise(RecogniseMessage::Confusion));
 pub static POSES: Action = action("poses", Message::Layer(Layer::Fit));
 pub static WATCH: Action = action("watch", Live(LiveMessage::Open));
 pub static WATCH_AGAIN: Action = action("watch-again", Live(LiveMessage::Again));
@@ -135,7 +127,6 @@ pub static THRESHOLD_UP: Action = action("threshold-up", Live(Threshold(1)));
 pub static THRESHOLD_DOWN: Action = action("threshold-down", Live(Threshold(-1)));
 pub static PERCENT: Action = action("percent", Live(LiveMessage::Percent));
 pub static FREEZE: Action = action("freeze", Live(LiveMessage::Freeze));
-pub static PEAK_HOLD: Action = action("peak-hold", Live(LiveMessage::PeakHold));
 pub static NEXT_LAYER: Action = action("next-layer", Live(LiveMessage::NextLayer));
 pub static PLOT: Action = action("plot", Live(LiveMessage::Plot));
 pub static NUMBERS: Action = action("numbers", Live(LiveMessage::Numbers));

@@ -45,7 +45,6 @@ pub static PLACES: &[KeyPlace] = &[
         ("u", &[&UNDO], "undo", "undo the last change, then earlier ones"),
         ("U<C-r>", &[&REDO], "", "redo what was undone"),
         ("=", &[&COMPARE], "", "compare with the state before the last step"),
-        ("H", &[&HISTORY], "", "History: all steps, to go back to any of them"),
         ("<Tab><S-Tab>", &[&REGION, &PREVIOUS_REGION], "region", "describe the next, previous piece or hole; or click it"),
         ("e", &[&EXPLORE], "explore", "Explore: all imprints of the shape, over all poses"),
         ("r", &[&RECOGNISE], "recognise", "Recognise: name the shape from its imprint"),
@@ -66,7 +65,7 @@ pub static PLACES: &[KeyPlace] = &[
         ("K", &[&EXPLAIN], "", "explain the descriptors: formula, unit, meaning"),
         ("yY", &[&COPY_DESCRIPTORS, &COPY_IMPRINT], "", "copy descriptors, imprint to your terminal's clipboard"),
         (":", &[&COMMAND], "", "type a command"),
-        ("?", &[&HELP], "help", "Help: all keys"),
+        ("?", &[&HELP], "help", "Help: the keys that work here"),
     ]),
     (Context::Hold, "hold", "While a shape is held", Context::Matrix, &[
         ("<Left><Right><Up><Down>", &[&NUDGE_LEFT, &NUDGE_RIGHT, &NUDGE_UP, &NUDGE_DOWN],
@@ -107,15 +106,6 @@ pub static PLACES: &[KeyPlace] = &[
         ("/<C-u>", &[&ERASE_ALL], "new search", "type part of a name to filter the list; / starts again"),
         ("<BS>", &[&ERASE_BEFORE], "", "delete a character of the filter"),
         ("<Esc><C-g>", &[&CANCEL], "cancel", "close it and change nothing"),
-        ("?", &[&HELP], "help", "these keys"),
-    ]),
-    (Context::History, "history", "In the history", Context::Everywhere, &[
-        ("<Up><Down>", &[&SCROLL_UP, &SCROLL_DOWN], "choose", "earlier, later step"),
-        ("<PageUp><PageDown>", &[&PAGE_UP, &PAGE_DOWN], "", "ten steps back, forward"),
-        ("<Home><End>", &[&FIRST, &LAST], "", "the start, the latest step"),
-        ("<Enter>", &[&ACCEPT], "go there", "go to the state after this step"),
-        ("=", &[&COMPARE], "compare", "compare that state with the present one"),
-        ("<Esc><C-g>qH", &[&CANCEL], "close", "leave everything as it is"),
         ("?", &[&HELP], "help", "these keys"),
     ]),
     (Context::Compare, "compare", "Comparing", Context::Everywhere, &[
@@ -205,21 +195,10 @@ pub static PLACES: &[KeyPlace] = &[
     (Context::Recognise, "recognise", "Recognising", Context::Matrix, &[
         ("t", &[&RANDOM_TOUCH], "touch", "a random touch of a shape of the model"),
         ("ax", &[&KEEP, &FORGET], "keep, forget", "keep this touch as one of several; forget them"),
-        ("oO", &[&NEXT_MODEL, &PREVIOUS_MODEL], "other model", "next, previous model: built in, then your own"),
-        ("v", &[&CONFUSION], "confusion", "which shapes are confused with which"),
         ("i", &[&PANEL], "answer", "on a narrow screen: the answer or the matrix"),
         ("P", &[&POSES], "", "the outline of the fitted shape"),
         ("<Enter>", &[&ACCEPT], "", "read or train the model again"),
         ("<Esc>r<C-g>q", &[&CANCEL], "close", "back to the descriptors; stops a training"),
-    ]),
-    (Context::Confusion, "confusion", "At the confusion matrix", Context::Everywhere, &[
-        ("<Left><Right><Up><Down>", &[&CURSOR_LEFT, &CURSOR_RIGHT, &CURSOR_UP, &CURSOR_DOWN],
-            "cell", "to another cell"),
-        ("<PageUp><PageDown>", &[&PAGE_UP, &PAGE_DOWN], "", "ten rows up, down"),
-        ("<Home><End>", &[&FIRST, &LAST], "", "first, last cell"),
-        ("<Enter>", &[&ACCEPT], "to matrix", "put the imprint of the cell onto the matrix"),
-        ("?", &[&HELP], "help", "these keys"),
-        ("<Esc><C-g>q", &[&CANCEL], "close", "back to Recognise"),
     ]),
     (Context::Live, "live", "Watching a sensor", Context::Everywhere, &[
         ("tT", &[&TARE, &NO_TARE], "tare", "subtract the median of the last 30 frames; no tare"),
@@ -234,7 +213,6 @@ pub static PLACES: &[KeyPlace] = &[
         ("<S-Left><S-Right><S-Up><S-Down>", &[&WINDOW_LEFT, &WINDOW_RIGHT, &WINDOW_UP, &WINDOW_DOWN],
             "other taxels", "see other taxels, if not all fit on the screen"),
         ("c", &[&FOLLOW_CONTACT], "", "keep the contact in sight again"),
-        ("p", &[&PEAK_HOLD], "hold", "hold the largest value of each cell, or release it"),
         ("v", &[&NEXT_LAYER], "view", "raw values, tared values, the imprint"),
         ("f", &[&PLOT], "", "plot contact over time, or force"),
         ("#", &[&NUMBERS], "", "values as numbers, or in shades"),
@@ -243,7 +221,7 @@ pub static PLACES: &[KeyPlace] = &[
         ("r", &[&RECORD], "record", "record all frames in a file, or stop recording"),
         ("w", &[&WATCH_AGAIN], "again", "play again; reopen a stream that has ended"),
         ("m", &[&MARK_FRAME], "", "mark this frame, or remove its mark"),
-        ("o", &[&NAME_SHAPE], "name", "name the shape by the next model, or by none"),
+        ("o", &[&NAME_SHAPE], "name", "name the shape, or name it no more"),
         ("<Enter>", &[&ACCEPT], "to matrix", "take the imprint to the matrix"),
         (":", &[&COMMAND], "", "type a command, such as at-least 10 for the threshold"),
         ("?", &[&HELP], "help", "these keys"),
@@ -257,20 +235,11 @@ pub static PLACES: &[KeyPlace] = &[
         ("<Esc><C-g>q", &[&CANCEL], "cancel", "cancel, without an answer"),
         ("?", &[&HELP], "help", "these keys"),
     ]),
-    // Esc only leaves the search first, so that it does not close too much; the other keys close help at once.
     (Context::Help, "help", "In the help", Context::Everywhere, &[
         ("<Up><Down>", &[&SCROLL_UP, &SCROLL_DOWN], "scroll", "scroll by a line"),
         ("<PageUp><PageDown><Space>", &[&SCREEN_UP, &SCREEN_DOWN, &SCREEN_DOWN], "", "scroll by a page"),
         ("<Home><End>", &[&FIRST, &LAST], "", "the first, the last line"),
-        ("/", &[&SEARCH], "search", "search for a key or what it does"),
-        ("nN", &[&NEXT_MATCH, &PREVIOUS_MATCH], "match", "next, previous match"),
-        ("q?<F1><Enter>", &[&QUIT], "close", "close"),
-        ("<Esc><C-g>", &[&CANCEL], "", "leave the search; without one: close"),
-    ]),
-    (Context::Search, "search", "Searching", Context::Line, &[
-        ("<Enter>", &[&ACCEPT], "keep", "keep the search, to go to other matches"),
-        ("<Esc><C-g>", &[&CANCEL], "cancel", "back to where the search began"),
-        ("<F1>", &[&HELP], "help", "these keys"),
+        ("<Esc><C-g>q?<F1><Enter>", &[&CANCEL], "close", "close"),
     ]),
     // In any text field, unless its page gives the key another meaning.
     (Context::Line, "line", "In a line of text", Context::Everywhere, &[

@@ -19,7 +19,6 @@ pub enum Context {
     Explain,
     Form,
     List,
-    History,
     Compare,
     Name,
     Command,
@@ -32,11 +31,9 @@ pub enum Context {
     Map,
     Export,
     Recognise,
-    Confusion,
     Live,
     Question,
     Help,
-    Search,
     Line,
     Everywhere,
 }
@@ -254,10 +251,10 @@ impl Keymap {
         }
     }
 
-    /// The key of an action, or how to type it if it has none.
+    /// The key of an action, or its name if it has none.
     pub fn label(&self, context: Context, action: &Action) -> String {
         let key = self.around(context).find(|(_, own)| *own == action);
-        key.map_or_else(|| format!(":{}", action.name), |(key, _)| key.label())
+        key.map_or_else(|| action.name.to_owned(), |(key, _)| key.label())
     }
 }
 
@@ -269,17 +266,14 @@ pub struct HelpLine {
     pub text: &'static str,
 }
 
-/// On the matrix, where a user begins, these are all rows; elsewhere the rows of the place and its outer places,
-/// without keys that an inner one binds, then those of the screen's other tabs.
+/// The rows of the place and its outer places, without keys that an inner one binds; then those of the other places on
+/// the matrix or on the pages of Explore.
 pub fn help(context: Context, keymap: &Keymap) -> Vec<HelpLine> {
-    let is_tab = |place: Context| place.outer() == Some(Context::Explore);
-    let inner: Vec<Context> = match context {
-        Context::Matrix => Vec::new(),
-        _ => context.around().collect(),
-    };
+    let inner: Vec<Context> = context.around().collect();
+    let screens = [Context::Matrix, Context::Explore];
     let others = Context::all().filter(|place| {
-        let is_shown = context == Context::Matrix || is_tab(context) && is_tab(*place);
-        is_shown && !inner.contains(place)
+        let screen = place.outer().filter(|outer| screens.contains(outer));
+        screen.is_some_and(|screen| inner.contains(&screen)) && !inner.contains(place)
     });
     let mut lines = Vec::new();
     let mut taken: Vec<Key> = Vec::new();
@@ -367,7 +361,7 @@ mod tests {
         assert_eq!(keymap.label(Matrix, &crate::tui::keys::action::TOGGLE), "x");
         assert_eq!(
             keymap.label(Matrix, &crate::tui::keys::action::DELETE),
-            ":delete"
+            "delete"
         );
         let free = change(Matrix, "x", "toggle");
         for wrong in [

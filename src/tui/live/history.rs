@@ -26,8 +26,6 @@ pub struct FrameHistory {
     rate: FrameRate,
     /// The frame that the page stays at, as it was when it was frozen; None if the page follows the source.
     frozen: Option<(u64, Arc<Frame>)>,
-    /// The largest value of each cell since peak hold was switched on; None if it is off.
-    pub(crate) peak: Option<Arc<Frame>>,
 }
 
 impl FrameHistory {
@@ -40,7 +38,6 @@ impl FrameHistory {
             most,
             rate: FrameRate::over(RATED),
             frozen: None,
-            peak: None,
         }
     }
 
@@ -48,9 +45,6 @@ impl FrameHistory {
         match frame.time {
             Some(time) => self.rate.add(time),
             None => self.rate = FrameRate::over(RATED),
-        }
-        if let Some(peak) = &mut self.peak {
-            raise(Arc::make_mut(peak), frame);
         }
         self.bytes += bytes_of(frame);
         self.frames.push_back(Arc::clone(frame));
@@ -101,12 +95,6 @@ impl FrameHistory {
         self.frozen.clone().or_else(following)
     }
 
-    /// Returns the frame to draw: the shown one, or the held peak if the page follows the source.
-    pub fn drawn(&self) -> Option<Arc<Frame>> {
-        let peak = self.peak.clone().filter(|_| self.follows());
-        peak.or_else(|| self.shown().map(|(_, frame)| frame))
-    }
-
     /// Returns up to this number of frames that end with the shown one and have its size, the last one first.
     pub fn up_to_shown(&self, count: usize) -> Vec<Arc<Frame>> {
         let skipped = usize::try_from(self.behind().unwrap_or(0)).unwrap_or(usize::MAX);
@@ -131,26 +119,6 @@ impl FrameHistory {
         let number = number.clamp(numbers.start, numbers.end.saturating_sub(1));
         self.frozen = self.get(number).map(|frame| (number, Arc::clone(frame)));
     }
-
-    pub fn switch_peak(&mut self) {
-        self.peak = match self.peak {
-            Some(_) => None,
-            None => self.frames.back().cloned(),
-        };
-    }
-}
-
-fn raise(peak: &mut Frame, frame: &Frame) {
-    if peak.size() != frame.size() {
-        peak.copy_from(frame);
-        return;
-    }
-    for (own, &other) in peak.values_mut().iter_mut().zip(frame.values()) {
-        *own = own.max(other);
-    }
-    peak.number = frame.number;
-    peak.label.clone_from(&frame.label);
-    peak.time = frame.time;
 }
 
 #[cfg(test)]

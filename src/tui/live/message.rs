@@ -30,7 +30,6 @@ pub enum LiveMessage {
     Second(i8),
     /// Go to the begin of the touch this many further on; negative goes back.
     Touch(i8),
-    PeakHold,
     /// Shows the next layer: raw values, tared values or imprint.
     NextLayer,
     /// Plots contact instead of force over the history, or force again.

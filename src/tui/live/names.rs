@@ -17,8 +17,8 @@ use crate::tui::widget::Theme;
 /// The model that names imprints, and its last answer.
 #[derive(Clone, Debug)]
 pub struct ShapeNames {
-    /// The model that was requested with the source; None if none was.
-    asked: Option<ModelChoice>,
+    /// The model that was requested with the source.
+    asked: ModelChoice,
     pub terms: Terms,
     /// None if imprints are not named.
     pub choice: Option<ModelChoice>,
@@ -32,7 +32,7 @@ pub struct ShapeNames {
 impl ShapeNames {
     pub fn new(request: &WatchRequest) -> Self {
         Self {
-            asked: request.model.clone(),
+            asked: request.model.clone().unwrap_or(ModelChoice::Library),
             terms: request.terms,
             choice: request.model.clone(),
             model: None,
@@ -51,17 +51,6 @@ impl ShapeNames {
         } else {
             self.answer = None;
         }
-    }
-
-    /// Returns the next model: first the requested one, then the built-in ones, then the user's own, then none.
-    pub fn next(&self, own: impl Iterator<Item = ModelChoice>) -> Option<ModelChoice> {
-        let sets = ModelChoice::BUILT_IN.iter().cloned().chain(own);
-        let sets = sets.filter(|set| Some(set) != self.asked.as_ref());
-        let sets: Vec<ModelChoice> = self.asked.iter().cloned().chain(sets).collect();
-        let Some(chosen) = &self.choice else {
-            return sets.into_iter().next();
-        };
-        sets.into_iter().skip_while(|set| set != chosen).nth(1)
     }
 
     /// Returns the imprint of the shape that was fitted; None if none was.
@@ -134,44 +123,15 @@ pub(crate) fn library_changed(app: &mut App) {
     }
 }
 
-/// Names the imprints of the source by the next model, which may be one of the user's own.
-pub(super) fn name_by_next(app: &mut App) {
-    let models = app.jobs.models.clone();
-    app.jobs.read("Listing the models", move |_| {
-        let own = models.names();
-        answer(move |app| {
-            let Some(page) = update::page(app) else {
-                return;
-            };
-            let next = page.names.next(own.into_iter().map(ModelChoice::from_name));
-            let text = match &next {
-                Some(choice) => format!("shapes are named by {choice}"),
-                None => "shapes are not named".to_owned(),
-            };
-            name_by(app, next);
-            inform(app, text);
-        })
+/// Names the imprints of the source, or names them no more.
+pub(super) fn switch(app: &mut App, names: &ShapeNames) {
+    let choice = names.choice.is_none().then(|| names.asked.clone());
+    let text = match &choice {
+        Some(choice) => format!("shapes are named by {choice}"),
+        None => "shapes are not named".to_owned(),
+    };
+    app.jobs.later(move |app| {
+        name_by(app, choice);
+        inform(app, text);
     });
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn models_are_the_requested_one_the_built_in_ones_the_own_ones_and_none() {
-        let own = ["asked", "other"].map(ModelChoice::from_text);
-        let mut request = WatchRequest::new("none");
-        request.model = Some(own[0].clone());
-        let mut names = ShapeNames::new(&request);
-        let mut sets = Vec::new();
-        while let Some(choice) = names.choice.clone() {
-            sets.push(choice);
-            names.choice = names.next(own.clone().into_iter());
-        }
-        let [asked, other] = own;
-        let built_in = ModelChoice::BUILT_IN.to_vec();
-        assert_eq!(sets, [vec![asked.clone()], built_in, vec![other]].concat());
-        assert_eq!(names.next(std::iter::empty()), Some(asked));
-    }
 }

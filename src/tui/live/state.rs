@@ -438,7 +438,6 @@ impl Live {
         self.recording.name = None;
         self.recording.refusal = None;
         self.history.follow();
-        self.history.peak = None;
         self.pipeline.restart();
         self.tare_error = None;
         self.status.state = SourceState::Live;
@@ -449,8 +448,8 @@ impl Live {
 
     /// Processes the frame that is shown now.
     pub(super) fn read(&mut self) {
-        (self.reading, self.error) = match self.history.drawn() {
-            Some(frame) => self.read_frame(frame),
+        (self.reading, self.error) = match self.history.shown() {
+            Some((_, frame)) => self.read_frame(frame),
             None => (None, None),
         };
         self.name();

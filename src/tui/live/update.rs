@@ -128,10 +128,6 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) {
         LiveMessage::Freeze => page.freeze(),
         LiveMessage::Second(by) => go(app, page, *by, "frame", Live::scrub_second),
         LiveMessage::Touch(by) => go(app, page, *by, "touch", Live::scrub_touch),
-        LiveMessage::PeakHold => {
-            page.history.switch_peak();
-            page.read();
-        }
         LiveMessage::NextLayer => next_layer(app, page),
         LiveMessage::Plot => page.plotted ^= 1,
         LiveMessage::Numbers => page.numbers ^= true,
@@ -155,7 +151,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) {
             Some((number, false)) => inform(app, format!("frame {number}: mark removed")),
             None => refuse(app, NO_FRAME),
         },
-        LiveMessage::NameShape => names::name_by_next(app),
+        LiveMessage::NameShape => names::switch(app, &page.names),
         LiveMessage::Again => match page.check_again() {
             Ok(()) => restart(app, page),
             Err(refused) => refuse(app, refused),

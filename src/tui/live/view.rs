@@ -387,9 +387,6 @@ fn of_state(live: &Live) -> Vec<(String, Role)> {
     if let Some(progress) = live.pipeline.progress() {
         say(format!("tare: {}", progress_text(progress)), Role::Focus);
     }
-    if live.history.peak.is_some() {
-        say("max held".to_owned(), Role::Focus);
-    }
     if live.is_marked() {
         say("marked".to_owned(), Role::Focus);
     }

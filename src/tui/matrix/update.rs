@@ -27,7 +27,6 @@ use crate::tui::explore::work::explored;
 use crate::tui::files::{self, FileToOpen};
 use crate::tui::form::FormDialog;
 use crate::tui::help::Help;
-use crate::tui::history::HistoryDialog;
 use crate::tui::jobs::answer;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::Context;
@@ -67,7 +66,6 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) {
         Message::Sensor => app.open(FormDialog::sensor(app.history.present())),
         Message::Save => save(app, false),
         Message::Command => app.open(CommandDialog::over(Context::Matrix, app)),
-        Message::History => app.open(HistoryDialog::new(app.history.steps())),
         Message::Explain => app.open(Explain::new(app)),
         Message::Draw => draw_on(app),
         Message::Help => app.open(Help::new(app.context())),

@@ -8,7 +8,6 @@
 //! watch run 2.csv --rows 4 --columns 5   a name, then flags
 //! load my shape                          names may contain spaces, and are never quoted
 //! cursor 3 4      move 0.5 -1      turn 15
-//! undo      coverage                     what a key of its own does
 //! ```
 //! Names, flags and ranges are those of the program's own command line, and so are the errors. Parameters of a figure
 //! that are not given have their defaults; those of the sensor keep their values.
@@ -33,8 +32,6 @@ use crate::tui::app::state::App;
 use crate::tui::explore::ExploreMessage;
 use crate::tui::explore::work::explored;
 use crate::tui::files::FileToOpen;
-use crate::tui::keys::action::Action;
-use crate::tui::keys::default_keys::PLACES;
 use crate::tui::keys::keymap::Context;
 use crate::tui::live::message::{LiveMessage, NamedSource};
 use crate::tui::live::state::Live;
@@ -73,6 +70,8 @@ enum Colon {
         #[command(flatten)]
         flags: FigureFlags,
     },
+    /// the keys that work here
+    Help,
     /// bring a stored shape onto the matrix
     Load { name: Vec<String> },
     /// move the shape right and down, in cells
@@ -82,6 +81,8 @@ enum Colon {
         #[arg(value_parser = parse_number, allow_hyphen_values = true)]
         dy: f64,
     },
+    /// empty the matrix, to draw by hand
+    New,
     /// how often taxels flip; 0: trained poses only; auto: usual
     Noise {
         #[arg(value_name = "E", value_parser = noise)]
@@ -104,6 +105,8 @@ enum Colon {
     /// quit without asking about unsaved work
     #[command(name = "quit!", alias = "q!")]
     QuitNow,
+    /// a random touch of a shape of the model
+    RandomTouch,
     /// which shape of this model left the imprint
     Recognise { model: Vec<String> },
     /// bring back this deleted shape, or the one deleted last
@@ -169,27 +172,6 @@ fn sides(text: &str) -> Result<FrameSize, String> {
     size.ok_or_else(|| format!("expected columns and rows from 1 to {MAX_FRAME_SIDE}, as in 16x16"))
 }
 
-/// The actions that are commands, too: those with a key row of their own. Others take arguments or only step.
-fn actions(page: Context) -> impl Iterator<Item = (&'static Action, &'static str)> {
-    let of = move |place: Context| match page {
-        Context::Live => place == Context::Live,
-        // The page of recognition uses the prompt of the matrix.
-        _ => matches!(place, Context::Matrix | Context::Recognise),
-    };
-    let rows = PLACES.iter().filter(move |(place, ..)| of(*place));
-    let rows = rows.flat_map(|(.., rows)| rows.iter());
-    rows.filter_map(|&(_, actions, _, help)| match actions {
-        [
-            Action {
-                message: Message::Command | Message::Accept | Message::Cancel,
-                ..
-            },
-        ] => None,
-        [action] => Some((*action, help)),
-        _ => None,
-    })
-}
-
 /// The commands of a page. Those of other pages are hidden.
 fn command(page: Context) -> clap::Command {
     let mut all = Colon::command().mut_subcommands(|own| {
@@ -200,12 +182,6 @@ fn command(page: Context) -> clap::Command {
         };
         own.hide(!is_shown)
     });
-    for (action, help) in actions(page) {
-        if all.find_subcommand(action.name).is_none() {
-            let own = clap::Command::new(action.name).about(help);
-            all = all.subcommand(own.disable_help_flag(true));
-        }
-    }
     all.build();
     all
 }
@@ -222,13 +198,8 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
         let said = said.collect::<Vec<_>>().join(" ");
         tip.take(1).fold(said, |said, tip| format!("{said}; {tip}"))
     })?;
-    let mut actions = actions(page);
-    let action = actions.find(|(own, _)| Some(own.name) == matches.subcommand_name());
-    match (Colon::from_arg_matches(&matches), action) {
-        (Ok(colon), _) => colon.meaning(app),
-        (Err(_), Some((action, _))) => Ok(action.message.clone()),
-        (Err(error), None) => Err(error.to_string()),
-    }
+    let colon = Colon::from_arg_matches(&matches).map_err(|error| error.to_string())?;
+    colon.meaning(app)
 }
 
 impl Colon {
@@ -270,8 +241,10 @@ impl Colon {
                 let figure = Source::Figure(figure.map_err(|failure| failure.text)?);
                 Message::Become(Box::new(Document::touched(document.sensor, figure)))
             }
+            Self::Help => Message::Help,
             Self::Load { name } => shape(Purpose::Load, &name, Message::Load)?,
             Self::Move { dx, dy } => Message::Move(dx, dy),
+            Self::New => Message::New,
             Self::Noise { noise } => named_on(app, |terms| terms.noise = noise.flatten()),
             Self::Open {
                 file,
@@ -289,6 +262,7 @@ impl Colon {
             Self::Picture { name } => shape(Purpose::Picture, &name, Message::Picture)?,
             Self::Quit => Message::Quit,
             Self::QuitNow => Message::QuitNow,
+            Self::RandomTouch => Message::Recognise(RecogniseMessage::Touch),
             Self::Recognise { model } => Message::Recognise(if model.is_empty() {
                 RecogniseMessage::Open
             } else {

@@ -7,7 +7,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use taxel_files::formats::Name;
 use taxel_files::formats::name::LONGEST;
-use taxel_files::storage::{Library, ModelChoice, ModelFolder, RememberedFile, ShapeOrigin};
+use taxel_files::storage::{Library, ModelChoice, ModelFolder, ShapeOrigin};
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::message::Message;
@@ -162,7 +162,6 @@ impl CommandDialog {
         };
         let has_arguments = line.contains(' ');
         if app.commands.last() != Some(&line) {
-            app.jobs.remember(RememberedFile::commands, line.clone());
             app.commands.push(line);
             self.given.clone_from(&app.commands);
         }

@@ -1,13 +1,11 @@
 //! Recognise: names the shape on the matrix from one or several touches, and shows how far the name can be trusted.
 //!
 //! ```text
-//! page        the page beside the matrix: the set and its model, the touches, what keys do
-//! trained     a model, how well it tells its shapes apart, a random touch
-//! panel       how the page is drawn: what the model says about the touches, in words
-//! confusion   which shapes are taken for which, with an imprint that two share
+//! page      the page beside the matrix: the set and its model, the touches, what keys do
+//! trained   a model, how well it tells its shapes apart, a random touch
+//! panel     how the page is drawn: what the model says about the touches, in words
 //! ```
 
-pub(crate) mod confusion;
 pub(crate) mod page;
 pub(crate) mod panel;
 pub(crate) mod trained;
@@ -20,14 +18,9 @@ use crate::naming::Terms;
 pub enum RecogniseMessage {
     Open,
     Choose(ModelChoice),
-    /// To the model this many further on; negative goes back.
-    NextModel(i8),
     Touch,
     Keep,
     Forget,
-    Confusion,
     Seed(u64),
     Terms(Terms),
-    /// Selects a cell of the confusion matrix: row, column.
-    SelectCell(usize, usize),
 }

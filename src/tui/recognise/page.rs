@@ -9,8 +9,7 @@ use taxel_core::imprint::Imprint;
 use taxel_core::recognition::Answer;
 use taxel_core::sensor::MatrixSize;
 use taxel_core::source::Source;
-use taxel_files::formats::Name;
-use taxel_files::storage::{ModelChoice, RememberedFile};
+use taxel_files::storage::ModelChoice;
 
 use crate::naming::Terms;
 use crate::tui::app::{
@@ -20,10 +19,8 @@ use crate::tui::jobs::{self, answer};
 use crate::tui::keys::{Context, action};
 use crate::tui::matrix;
 use crate::tui::recognise::RecogniseMessage;
-use crate::tui::recognise::confusion::Confusion;
 use crate::tui::recognise::panel;
 use crate::tui::recognise::trained::TrainedModel;
-use crate::tui::widget::write::other;
 
 pub(crate) struct Recognition {
     pub(crate) choice: ModelChoice,
@@ -31,9 +28,6 @@ pub(crate) struct Recognition {
     trained: Option<Arc<TrainedModel>>,
     /// Another set, or the same one, whose model is read or trained.
     pub(super) preparing: Option<Preparation>,
-    /// The set that could not be read last: the next step through the sets goes on from there.
-    unreadable: Option<ModelChoice>,
-    stored: Vec<Name>,
     pub(super) kept: Vec<Imprint>,
     /// The touch on the matrix.
     pub(super) present: Imprint,
@@ -51,8 +45,8 @@ pub(crate) struct Recognition {
 
 pub(super) struct Preparation {
     pub(super) choice: ModelChoice,
-    /// What is carried out once the model is ready, unless the user does something else meanwhile.
-    request: Option<RecogniseMessage>,
+    /// Whether a random touch is made once the model is ready, unless the user does something else meanwhile.
+    then_touches: bool,
     /// Whether the page was opened for this set: it closes if the set cannot be read.
     opened: bool,
 }
@@ -64,8 +58,6 @@ impl Recognition {
             choice: ModelChoice::Library,
             trained: None,
             preparing: None,
-            unreadable: None,
-            stored: Vec::new(),
             kept: Vec::new(),
             present: Imprint::empty(MatrixSize::SMALLEST),
             threshold: None,
@@ -85,13 +77,6 @@ impl Recognition {
     /// Returns the model that answers: none while another one is prepared.
     pub(crate) fn model(&self) -> Option<&Arc<TrainedModel>> {
         self.trained.as_ref().filter(|_| self.preparing.is_none())
-    }
-
-    /// Returns the set `by` places after the chosen one, or after one that could not be read since.
-    fn other(&self, by: i8) -> ModelChoice {
-        let stored = self.stored.iter().cloned().map(ModelChoice::Stored);
-        let all = ModelChoice::BUILT_IN.iter().cloned().chain(stored);
-        other(all.collect(), self.choice(), self.unreadable.as_ref(), by)
     }
 
     /// Returns the kept touches, and the one on the matrix unless it is empty or is the last kept one.
@@ -119,7 +104,7 @@ impl Recognition {
         match message {
             Message::Recognise(RecogniseMessage::Keep) => self.is_new_touch(),
             Message::Recognise(RecogniseMessage::Forget) => !self.kept.is_empty(),
-            Message::Recognise(RecogniseMessage::Touch | RecogniseMessage::Confusion) => {
+            Message::Recognise(RecogniseMessage::Touch) => {
                 self.preparing.is_some() || self.model().is_some()
             }
             _ => true,
@@ -190,7 +175,7 @@ impl Page for RecognisePage {
             return Flow::Stay;
         }
         if let Some(preparing) = &mut page.preparing {
-            preparing.request = None;
+            preparing.then_touches = false;
         }
         match message.clone() {
             Message::Recognise(asked) => carry_out(app, asked, true),
@@ -231,7 +216,6 @@ fn carry_out(app: &mut App, asked: RecogniseMessage, is_open: bool) {
     }
     let choice = match &asked {
         RecogniseMessage::Choose(choice) => Some(choice.clone()),
-        RecogniseMessage::NextModel(by) => Some(app.recognition.other(*by)),
         _ => None,
     };
     if !is_open {
@@ -242,22 +226,18 @@ fn carry_out(app: &mut App, asked: RecogniseMessage, is_open: bool) {
         prepare(app, choice, !is_open);
     }
     match asked {
-        RecogniseMessage::NextModel(_) => name_model(app),
         RecogniseMessage::Keep => keep(app),
         RecogniseMessage::Forget => forget(app),
         RecogniseMessage::Terms(terms) => {
             app.recognition.terms = terms;
             app.recognition.ask();
         }
-        RecogniseMessage::Touch | RecogniseMessage::Confusion => {
+        RecogniseMessage::Touch => {
             let page = &mut app.recognition;
             match (page.model().cloned(), &mut page.preparing) {
-                (Some(trained), _) => match asked {
-                    RecogniseMessage::Touch => touch(app, &trained),
-                    _ => app.open(Confusion::new(trained)),
-                },
+                (Some(trained), _) => touch(app, &trained),
                 (None, Some(preparing)) => {
-                    preparing.request = Some(asked);
+                    preparing.then_touches = true;
                     inform(app, "a model is prepared first");
                 }
                 _ => refuse(app, "the model is not prepared yet"),
@@ -265,16 +245,6 @@ fn carry_out(app: &mut App, asked: RecogniseMessage, is_open: bool) {
         }
         _ => {}
     }
-}
-
-/// Names the model, since the panel may be out of sight, and says how models of the user's own come about, as long as
-/// there are none.
-fn name_model(app: &mut App) {
-    let mut text = app.recognition.choice().to_string();
-    if app.recognition.stored.is_empty() {
-        text += "; train your own with 'taxel model train' in a shell";
-    }
-    inform(app, text);
 }
 
 /// Has the model prepared if there is none, or if it is that of another set. A training may take long: a set whose model
@@ -291,16 +261,14 @@ fn prepare(app: &mut App, choice: Option<ModelChoice>, opened: bool) {
     let known = page.trained.clone().filter(|_| choice == page.choice);
     page.preparing = Some(Preparation {
         choice: choice.clone(),
-        request: None,
+        then_touches: false,
         opened,
     });
     page.ask();
     let models = app.jobs.models.clone();
     app.jobs.run(jobs::Slot::Model, move |progress| {
         let trained = TrainedModel::prepare(&models, choice, known, progress);
-        // They may have changed.
-        let stored = models.names();
-        answer(move |app| take_model(app, stored, trained))
+        answer(move |app| take_model(app, trained))
     });
 }
 
@@ -313,9 +281,8 @@ pub(crate) fn library_changed(app: &mut App) {
 }
 
 /// Takes the model that was prepared. If it could not be read, the set before it stays.
-fn take_model(app: &mut App, stored: Vec<Name>, trained: Result<Arc<TrainedModel>, String>) {
+fn take_model(app: &mut App, trained: Result<Arc<TrainedModel>, String>) {
     let page = &mut app.recognition;
-    page.stored = stored;
     let Some(preparing) = page.preparing.take() else {
         return;
     };
@@ -325,24 +292,15 @@ fn take_model(app: &mut App, stored: Vec<Name>, trained: Result<Arc<TrainedModel
         Ok(trained) => {
             // What was given as the name of a stored model may be that of a file.
             page.choice = trained.choice.clone();
-            // A model from a file is not remembered, since the next run may begin in another folder.
-            if !matches!(page.choice, ModelChoice::File(_)) {
-                let name = page.choice.name().to_owned();
-                app.jobs.remember(RememberedFile::recognised_set, name);
-            }
-            (page.trained, page.unreadable) = (Some(trained), None);
+            page.trained = Some(trained);
             page.ask();
             let has_keys = app.top_mut::<RecognisePage>().is_some();
-            if let Some(request) = preparing.request.filter(|_| has_keys) {
-                // A notice that it is not ready, or is prepared first, would be wrong now.
-                inform(app, "the model is ready");
-                act(app, request);
+            if preparing.then_touches && has_keys {
+                act(app, RecogniseMessage::Touch);
             }
         }
         Err(reason) => {
-            if is_other {
-                page.unreadable = Some(choice);
-            } else {
+            if !is_other {
                 (page.choice, page.trained) = (choice, None);
             }
             page.ask();

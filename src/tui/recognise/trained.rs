@@ -11,7 +11,6 @@ use taxel_core::sensor::Sensor;
 use taxel_files::storage::{FoundModel, ModelChoice, Models};
 
 use crate::tui::jobs::JobProgress;
-use crate::tui::recognise::confusion::{Examples, examples};
 
 #[derive(Debug)]
 pub(crate) struct TrainedModel {
@@ -20,7 +19,6 @@ pub(crate) struct TrainedModel {
     /// Length and time of the file that it was read from.
     version: Option<(u64, SystemTime)>,
     pub(super) evaluation: Evaluation,
-    pub(super) examples: Examples,
 }
 
 impl TrainedModel {
@@ -53,7 +51,6 @@ impl TrainedModel {
         let model = found.ready(progress)?;
         Ok(Arc::new(Self {
             evaluation: Evaluation::of(&model),
-            examples: examples(&model),
             choice,
             model,
             version,
@@ -90,7 +87,7 @@ impl TrainedModel {
 }
 
 /// Returns an imprint on the user's sensor if it fits there, otherwise on the model's sensor; and that sensor.
-pub(super) fn onto(imprint: &Imprint, sensor: Sensor, own: Sensor) -> (Sensor, Imprint) {
+fn onto(imprint: &Imprint, sensor: Sensor, own: Sensor) -> (Sensor, Imprint) {
     let moved = |sensor: Sensor| Some((sensor, moved_onto(imprint, &sensor)?));
     let moved = moved(sensor).or_else(|| moved(own));
     moved.unwrap_or((sensor, Imprint::empty(sensor.size())))

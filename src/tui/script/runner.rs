@@ -123,7 +123,7 @@ fn expect(look: impl Fn(&Session) -> Option<String> + 'static) -> Result<Act, St
 type Command = (&'static str, fn(&str) -> Result<Act, String>);
 
 /// The commands that need the program to run.
-const COMMANDS: [Command; 19] = [
+const COMMANDS: [Command; 16] = [
     ("Resize", |text| {
         let (columns, rows) = stated_size(text)?;
         drive(move |session| session.resize(columns, rows))
@@ -202,40 +202,6 @@ const COMMANDS: [Command; 19] = [
             (pattern.is_match(&session.screen())).then(|| format!("{shown} is on the screen"))
         })
     }),
-    ("ExpectAt", |text| {
-        let (at, text) = two(text, "a text")?;
-        let ((column, row), text) = (position(at)?, filled(text)?);
-        expect(move |session| {
-            let screen = session.screen();
-            let line = line_of(&screen, row);
-            let rest = line.chars().skip(character_at(line, column));
-            let found: String = rest.take(text.chars().count()).collect();
-            (found != text).then(|| {
-                let (found, text) = (shortened(&found), shortened(&text));
-                format!("at {column},{row} there is {found:?}, expected {text:?}")
-            })
-        })
-    }),
-    ("ExpectStyle", |text| {
-        let (at, name) = two(text, "a style")?;
-        let (column, row) = position(at)?;
-        let style = STYLES.iter().find(|(style, _)| *style == name);
-        let (expected, letter) = *style.ok_or_else(|| {
-            let names = STYLES.map(|(name, _)| name);
-            format!("style {}", unknown_name(name, &names))
-        })?;
-        expect(move |session| {
-            let index = character_at(line_of(&session.screen(), row), column);
-            let found = line_of(&session.styles(), row).chars().nth(index);
-            let style = STYLES.iter().find(|(_, own)| Some(*own) == found);
-            let found = match style {
-                Some((_, own)) if *own == letter => return None,
-                Some((found, _)) => format!("at {column},{row} the style is {found}"),
-                None => format!("{column},{row} is not on the screen"),
-            };
-            Some(format!("{found}, expected {expected}"))
-        })
-    }),
     ("ExpectScreen", |name| {
         let name = file_name(name, "a screen")?;
         act(move |runner| runner.expect_screen(&name))
@@ -256,12 +222,6 @@ const COMMANDS: [Command; 19] = [
             Err(format!("expected {expected}, found {found}: {why}").into())
         })
     }),
-    ("Signal", |name| match name {
-        "TSTP" => drive(|session| session.send(Message::Redraw)),
-        // Unsaved work is in the journal already; the program ends without a question.
-        _ if SIGNALS.contains(&name) => drive(|session| session.send(Message::Terminate)),
-        _ => Err(format!("signal {}", unknown_name(name, &SIGNALS))),
-    }),
     // All work is finished already.
     ("Wait", |text| {
         alone("Wait", text)?;
@@ -275,15 +235,6 @@ const COMMANDS: [Command; 19] = [
         }))
     }),
 ];
-
-const STYLES: [(&str, char); 4] = [
-    ("plain", '.'),
-    ("reverse", 'R'),
-    ("bold", 'B'),
-    ("dim", 'D'),
-];
-
-const SIGNALS: [&str; 5] = ["HUP", "INT", "QUIT", "TERM", "TSTP"];
 
 /// How the program starts, and with what: read from the lines before the first command.
 struct Start {
@@ -566,21 +517,6 @@ fn find(screen: &str, text: &str) -> Option<(u16, u16)> {
         let column = write::width(&line[..line.find(text)?]);
         Some((u16::try_from(column).ok()?, u16::try_from(row).ok()?))
     })
-}
-
-/// Returns the index of the character in a column; a wide character takes two columns.
-fn character_at(line: &str, column: u16) -> usize {
-    let (mut end, column) = (0, usize::from(column));
-    let before = line.chars().take_while(|character| {
-        end += write::width(character.encode_utf8(&mut [0; 4]));
-        end <= column
-    });
-    before.count() + column.saturating_sub(write::width(line))
-}
-
-/// Returns a row of a screen; empty below the last one.
-fn line_of(grid: &str, row: u16) -> &str {
-    grid.lines().nth(row.into()).unwrap_or("")
 }
 
 fn state(app: &App) -> Value {

@@ -48,7 +48,6 @@ impl Session {
         app.jobs = world;
         let size = (width, height);
         let mut session = Self { app, size };
-        Jobs::remind(&mut session.app);
         session.send(Message::Resized(width, height));
         offer(&mut session.app);
         session

@@ -60,8 +60,6 @@ pub fn run(
     app.jobs = world.with_threads(Arc::new(move || {
         let _ = wake.send(Event::Answered);
     }));
-    // Before signals are handled: if the disk hangs here, they still end the program.
-    Jobs::remind(&mut app);
     let terminal = session::terminal()?;
     unix::watch(terminal.try_clone()?, sender.clone())?;
     session::enter(&terminal, settings, &sender)?;

@@ -3,7 +3,6 @@
 use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::{Endpoint, Message};
-use crate::tui::widget::Role;
 use crate::tui::widget::write::first_of;
 
 #[derive(Clone, Copy, Debug)]
@@ -66,58 +65,5 @@ pub fn moved(row: usize, message: &Message) -> Option<usize> {
         Message::ScrollTo(Endpoint::Last) => Some(usize::MAX),
         Message::Select(row) => Some(row),
         _ => None,
-    }
-}
-
-/// Returns true if a text contains the wanted text; the empty text is never found.
-pub fn contains(text: &str, wanted: &str) -> bool {
-    first(text, wanted).is_some()
-}
-
-pub fn marked<'a>(text: &'a str, wanted: &str, role: Role) -> Vec<(&'a str, Role)> {
-    let (mut pieces, mut rest) = (Vec::new(), text);
-    while let Some((start, end)) = first(rest, wanted) {
-        pieces.push((&rest[..start], role));
-        pieces.push((&rest[start..end], Role::Match));
-        rest = &rest[end..];
-    }
-    pieces.push((rest, role));
-    pieces.retain(|(piece, _)| !piece.is_empty());
-    pieces
-}
-
-fn first(text: &str, wanted: &str) -> Option<(usize, usize)> {
-    if wanted.is_empty() {
-        return None;
-    }
-    let capitals = wanted.chars().any(char::is_uppercase);
-    let same = |a: char, b: char| a == b || (!capitals && a.to_lowercase().eq(b.to_lowercase()));
-    text.char_indices().find_map(|(start, _)| {
-        let mut rest = text[start..].chars();
-        let all = wanted
-            .chars()
-            .all(|wanted| rest.next().is_some_and(|own| same(own, wanted)));
-        all.then(|| (start, text.len() - rest.as_str().len()))
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn small_letters_find_capitals_and_capitals_only_themselves() {
-        for (text, wanted, found) in [
-            ("Home End", "end", Some((5, 8))),
-            ("Home End", "End", Some((5, 8))),
-            ("append", "End", None),
-            ("17° × 2", "×", Some((5, 7))),
-            ("aab", "ab", Some((1, 3))),
-            ("ab", "abc", None),
-            ("ab", "", None),
-            ("", "a", None),
-        ] {
-            assert_eq!(first(text, wanted), found, "{wanted:?} in {text:?}");
-        }
     }
 }

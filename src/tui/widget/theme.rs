@@ -22,7 +22,6 @@ pub enum Role {
     Missing,
     Cursor,
     Focus,
-    Match,
     Error,
 }
 
@@ -125,9 +124,7 @@ impl Theme {
             Role::Key | Role::Title | Role::Error | Role::Surplus | Role::Missing => {
                 Style::new().add_modifier(Modifier::BOLD)
             }
-            Role::Cursor | Role::Focus | Role::Match => {
-                Style::new().add_modifier(Modifier::REVERSED)
-            }
+            Role::Cursor | Role::Focus => Style::new().add_modifier(Modifier::REVERSED),
             Role::Text | Role::Active | Role::Chosen | Role::Hole => Style::new(),
         };
         let tint = match (role, self.palette) {

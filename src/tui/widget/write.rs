@@ -241,30 +241,6 @@ pub fn around(now: usize, by: i8, count: usize) -> usize {
     (now + step) % count
 }
 
-/// Returns the item `by` places after the chosen one, or after one that `failed` when it was chosen since; after the
-/// last item comes the first. An item that is no longer in the list counts as its last.
-///
-/// ```
-/// use taxel::tui::widget::write::other;
-/// let all = || vec!["one", "broken", "two"];
-/// assert_eq!(other(all(), &"one", None, 1), "broken");
-/// assert_eq!(other(all(), &"one", Some(&"broken"), 1), "two");
-/// assert_eq!(other(all(), &"one", Some(&"broken"), -1), "two");
-/// ```
-pub fn other<T: PartialEq + Clone>(mut all: Vec<T>, chosen: &T, failed: Option<&T>, by: i8) -> T {
-    let from = failed.unwrap_or(chosen);
-    if !all.contains(from) {
-        all.push(from.clone());
-    }
-    let before = all.iter().take_while(|item| *item != from);
-    let mut next = around(before.count(), by, all.len());
-    // The chosen one is there already: a step from one that failed goes past it.
-    if all[next] == *chosen && from != chosen {
-        next = around(next, by, all.len());
-    }
-    all.swap_remove(next)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -44,10 +44,7 @@ fn unsaved_work_is_offered_back_once() {
         &["unsaved 1 loaded", "NA 1 in all"],
     );
     press(&mut later, "un<Space>smine<Enter>q");
-    shows(
-        &later,
-        &["An earlier ellipse is not saved; the history (H) has it."],
-    );
+    shows(&later, &["1 earlier shape is not saved; u goes back."]);
     press(&mut later, "y");
     assert!(later.app().ended());
     drop(later);
@@ -71,14 +68,14 @@ fn all_unsaved_work_is_offered_one_after_the_other() {
     then(&mut later, "y", &["last time (1 of 2): ", "NA     3 "]);
     then(&mut later, "y", &["last time: "]);
     then(&mut later, "y", &["restored; s saves it"]);
-    let rows = [
-        "0  3 taxels restored",
-        "1  2 taxels restored",
-        "2  1 taxel restored",
-    ];
-    then(&mut later, "H", &rows);
-    press(&mut later, "<Esc>");
-    let left = "The imprint and 2 earlier shapes are not saved; the history (H) has them.";
+    then(&mut later, "u", &["undone: 1 taxel restored"]);
+    then(
+        &mut later,
+        "uu",
+        &["! nothing to undo", "3 taxels restored"],
+    );
+    press(&mut later, "UU");
+    let left = "The imprint and 2 earlier shapes are not saved; u goes back.";
     then(&mut later, "q", &[left]);
     // All of it is kept if the program dies once more.
     drop(later);
@@ -99,7 +96,7 @@ fn restored_work_is_not_lost_by_undo() {
     then(
         &mut again,
         "q",
-        &["An earlier ellipse is not saved; the history (H) has it."],
+        &["1 earlier shape is not saved; u goes back."],
     );
 }
 

@@ -32,7 +32,7 @@ pub use error::{FileError, LibraryError};
 pub use file::{Existing, FileId, NewFile, check_writable, folder_of, open, write};
 pub use journal::{Journal, Orphan, UNNAMED};
 pub use library::{Expected, Library, LibraryEntry, LoadedShape, ShapeOrigin, TRASH_KEPT};
-pub use library::{LIBRARY_VARIABLE, RememberedFile, below_home, usual_folder};
+pub use library::{LIBRARY_VARIABLE, below_home, usual_folder};
 pub use models::{
     FoundModel, ModelCache, ModelChoice, ModelFolder, Models, load_model, load_whole_model,
     model_hash, save_model,
