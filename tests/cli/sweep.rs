@@ -231,14 +231,13 @@ fn shards_that_do_not_belong_together_are_refused() {
             format!("{one} {out} --atlas {no}"),
             format!("{out}: shard 1/1, but {one} is shard 1/2: not the same study"),
         ),
-        (format!("{one} --atlas {no}"), "1 of 2 shards is missing: 2".to_owned()),
+        (
+            format!("{one} --atlas {no}"),
+            "1 of 2 shards is missing: 2".to_owned(),
+        ),
         (
             format!("{one} {one} --atlas {no}"),
             format!("{one}: shard 1/2 is given twice"),
-        ),
-        (
-            format!("{two} {one} --atlas {no} --memory 1M"),
-            "stopped: needs more memory than the 1.0M allowed; allow more (--memory), or merge on a machine that has more".to_owned(),
         ),
     ] {
         refused(&merge(&line), 1, &message);
@@ -350,11 +349,6 @@ fn impossible_sweeps_are_refused() {
         ),
         (
             2,
-            "sweep hexagon --memory much",
-            "expected an amount of memory such as 2G",
-        ),
-        (
-            2,
             "sweep hexagon --poses a.npz",
             "expected a name that ends in .npy",
         ),
@@ -406,25 +400,6 @@ assert x0[0] == 5.0 and x0.max() <= 5.9 and numpy.isnan(atlas['cg_cd_direction']
     assert!(run.status.success(), "{wrong}");
 }
 
-/// A sweep that would need more memory than it may use is stopped, with advice.
-#[cfg(target_os = "linux")]
-#[test]
-fn a_sweep_respects_the_memory_limit() {
-    let scratch = folder();
-    let atlas = scratch.path().join("a.npz");
-    let line = format!(
-        "sweep rectangle --length 10 --width 8 --thickness 0.7 --x0 0:3:0.05 --y0 0:3:0.05 --angle 0:45:1 --memory 20M --quiet --atlas {}",
-        atlas.display()
-    );
-    let run = taxel(&line, "");
-    let told = run.stderr.contains("memory") && run.stderr.contains("--shard 1/8");
-    assert!(
-        run.status == Some(1) && told && run.stdout.is_empty(),
-        "{run:?}"
-    );
-    assert_eq!(names(scratch.path()), [""; 0], "nothing is left");
-}
-
 /// The signal of `ulimit -f` would end the program without a message.
 #[test]
 fn a_file_beyond_the_limit_is_an_error_like_a_full_disk() {
@@ -449,7 +424,7 @@ fn an_interrupt_stops_at_once_and_leaves_no_files() {
     let path = |name: &str| folder.join(name).display().to_string();
     // A sweep that would take hours.
     let line = format!(
-        "sweep heptagon --side 3 --thickness 1 --x0 5:5.999:0.001 --y0 5:5.999:0.001 --angle 0:359.999:0.001 --quiet --memory 900000T --atlas {} --poses {}",
+        "sweep heptagon --side 3 --thickness 1 --x0 5:5.999:0.001 --y0 5:5.999:0.001 --angle 0:359.999:0.001 --quiet --atlas {} --poses {}",
         path("a.npz"),
         path("p.npy")
     );

@@ -1,88 +1,35 @@
 //! Limits the memory of long work. Sweeps and trainings keep every distinct imprint.
 //!
 //! The program checks its own memory while it works. Tables grow by doubling, so the work stops when half of the
-//! allowed memory is in use: the next step still fits, and none has to be abandoned halfway.
+//! free memory is in use: the next step still fits, and none has to be abandoned halfway.
 
-use std::fmt;
 use std::path::Path;
-use std::str::FromStr;
 use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
 use taxel_core::lock::try_locked;
 use taxel_core::progress::{Progress, stop_if};
 
-use crate::formats::value::counted;
-
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// An amount of memory in bytes, written as `2G`, `500M` or `1.5G`. K is 1024 bytes, M is 1024 K, G is 1024 M, T is
-/// 1024 G.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct MemorySize(pub u64);
-
-/// The letters of [`MemorySize`] and their numbers of bytes.
-const UNITS: [(char, f64); 4] = [
-    ('T', 1_099_511_627_776.0),
-    ('G', 1_073_741_824.0),
-    ('M', 1_048_576.0),
-    ('K', 1024.0),
-];
-
-impl FromStr for MemorySize {
-    type Err = &'static str;
-
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "checked to be in range"
-    )]
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let unit = UNITS.iter().find_map(|(letter, bytes)| {
-            let number = text.strip_suffix([*letter, letter.to_ascii_lowercase()])?;
-            Some((number, *bytes))
-        });
-        let (number, bytes) = unit.unwrap_or((text, 1.0));
-        match number.parse::<f64>().map(|number| number * bytes) {
-            Ok(total) if (1.0..1e18).contains(&total) => Ok(Self(total as u64)),
-            _ => Err("expected an amount of memory such as 2G or 500M"),
-        }
-    }
-}
-
-impl fmt::Display for MemorySize {
-    /// Writes the amount rounded to a tenth, such as `1.5G`; less than 1K in bytes, such as `12 bytes`.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        #[expect(clippy::cast_precision_loss, reason = "rounded anyway")]
-        let total = self.0 as f64;
-        match UNITS.iter().find(|(_, bytes)| total >= *bytes) {
-            Some((letter, bytes)) => write!(f, "{:.1}{letter}", total / bytes),
-            None => f.write_str(&counted(self.0, "byte")),
-        }
-    }
-}
-
-/// Keeps a piece of work within its memory.
+/// Keeps a piece of work within the memory that is free.
 #[derive(Debug)]
 pub struct MemoryGuard {
     /// The end of the message, which says what the user can do about too little memory.
     advice: &'static str,
-    /// None if nobody set a limit and the system does not tell how much is free.
-    allowed: Option<MemorySize>,
+    /// In bytes; None if the system does not tell how much is free.
+    allowed: Option<u64>,
     due: Mutex<Instant>,
     exceeded: OnceLock<String>,
 }
 
 impl MemoryGuard {
-    /// Creates a guard with this limit, or if None, with all memory that is free. Nothing beyond half of the address
-    /// space is allowed: no table can be larger.
-    pub fn new(allowed: Option<MemorySize>, advice: &'static str) -> Self {
-        let addressable = MemorySize((usize::MAX / 2) as u64);
+    /// Nothing beyond half of the address space is allowed: no table can be larger.
+    pub fn new(advice: &'static str) -> Self {
+        let addressable = (usize::MAX / 2) as u64;
         Self {
             advice,
-            allowed: allowed
-                .or_else(free)
-                .map(|allowed| allowed.min(addressable)),
+            allowed: free().map(|free| free.min(addressable)),
             due: Mutex::new(Instant::now()),
             exceeded: OnceLock::new(),
         }
@@ -115,11 +62,11 @@ impl MemoryGuard {
     /// Checks memory now, between two steps of work that are few and large.
     ///
     /// # Errors
-    /// A sentence, if more than half of the allowed memory is in use.
+    /// A sentence, if more than half of the free memory is in use.
     pub fn check(&self) -> Result<(), String> {
         match (self.allowed, used()) {
-            (Some(allowed), Some(used)) if used > allowed.0 / 2 => Err(format!(
-                "stopped: needs more memory than the {allowed} allowed; {}",
+            (Some(allowed), Some(used)) if used > allowed / 2 => Err(format!(
+                "stopped: needs more memory than is free; {}",
                 self.advice
             )),
             _ => Ok(()),
@@ -141,7 +88,7 @@ fn used() -> Option<u64> {
 
 /// How much memory the program may use: the machine's free memory and what the program uses already, or less if its
 /// control group or one around it has a limit (`memory.max`, see cgroups(7)).
-fn free() -> Option<MemorySize> {
+fn free() -> Option<u64> {
     let machine = listed("/proc/meminfo", "MemAvailable:")? + used()?;
     let groups = std::fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
     let own = groups.lines().find_map(|line| line.strip_prefix("0::/"));
@@ -151,7 +98,7 @@ fn free() -> Option<MemorySize> {
         // A group without a limit has the word `max`; the outermost group has no file.
         std::fs::read_to_string(file).ok()?.trim().parse().ok()
     });
-    limits.chain([machine]).min().map(MemorySize)
+    limits.chain([machine]).min()
 }
 
 #[cfg(test)]
@@ -163,43 +110,26 @@ mod tests {
     use super::*;
 
     #[test]
-    fn amounts_are_read_and_shown() {
-        for (text, bytes, shown) in [
-            ("2G", 2 << 30, "2.0G"),
-            ("1.5g", 3 << 29, "1.5G"),
-            ("500M", 500 << 20, "500.0M"),
-            ("1024", 1024, "1.0K"),
-            ("12", 12, "12 bytes"),
-        ] {
-            assert_eq!(text.parse(), Ok(MemorySize(bytes)), "{text}");
-            assert_eq!(MemorySize(bytes).to_string(), shown);
-        }
-        for text in ["", "G", "-1G", "0", "2GB", "1e30", "NaN", "two"] {
-            assert!(text.parse::<MemorySize>().is_err(), "{text}");
-        }
-    }
-
-    #[test]
     fn a_guard_stops_what_needs_too_much() {
-        let small = MemoryGuard::new(Some(MemorySize(1024)), "work in shards (--shard)");
-        let large = MemoryGuard::new(Some(MemorySize(u64::MAX)), "");
-        // No table can be larger than half of the address space.
-        let addressable = (usize::MAX / 2) as u64;
-        assert_eq!(large.allowed, Some(MemorySize(addressable)));
+        let large = MemoryGuard::new("");
+        let small = MemoryGuard {
+            allowed: Some(1024),
+            ..MemoryGuard::new("work in shards (--shard)")
+        };
         let flow = |guard: &MemoryGuard| guard.limit(&ToTheEnd, |progress| progress.add(1_u64));
         assert_eq!(flow(&large), Ok(ControlFlow::Continue(())));
-        let stopped = "stopped: needs more memory than the 1.0K allowed; work in shards (--shard)";
+        let stopped = "stopped: needs more memory than is free; work in shards (--shard)";
         if used().is_some() {
             assert_eq!(flow(&small), Err(stopped.to_owned()));
             assert_eq!(small.check(), Err(stopped.to_owned()));
-            assert!(free().expect("on Linux") > MemorySize(1 << 20));
+            assert!(free().expect("on Linux") > 1 << 20);
         }
         assert_eq!(large.check(), Ok(()));
     }
 
     #[test]
     fn work_that_its_own_progress_stops_is_no_matter_of_memory() {
-        let guard = MemoryGuard::new(Some(MemorySize(1 << 50)), "");
+        let guard = MemoryGuard::new("");
         let stopped = guard.limit(&|_: u64| ControlFlow::Break(()), |progress| progress.add(1));
         assert_eq!(stopped, Ok(ControlFlow::Break(())));
     }

@@ -50,7 +50,8 @@ where
     }
 }
 
-pub(crate) const TOO_LITTLE_MEMORY: &str = "take coarser steps, work in shards (--shard 1/8, ..., then taxel merge), or allow more (--memory)";
+pub(crate) const TOO_LITTLE_MEMORY: &str =
+    "take coarser steps, or work in shards (--shard 1/8, ..., then taxel merge)";
 
 pub(crate) fn parse_probability(text: &str) -> Result<f64, String> {
     let number = Some(parse_number(text)?).filter(|number| (0.0..=1.0).contains(number));

@@ -8,7 +8,7 @@ use std::time::Instant;
 use taxel_core::recognition::{Evaluation, ModelMerge};
 use taxel_core::sweep::SweepMerge;
 use taxel_files::formats::{MODEL_FORMAT, archive_kind, json};
-use taxel_files::memory::{MemoryGuard, MemorySize};
+use taxel_files::memory::MemoryGuard;
 use taxel_files::storage::{self, check_writable, load_atlas, load_model, save_model, write_atlas};
 
 use crate::cli::commands::export::{replacing, written};
@@ -39,9 +39,6 @@ pub(crate) struct Merge {
     /// Replace an existing file
     #[arg(long)]
     force: bool,
-    /// Most memory to use, such as 500M or 2G; default all that is free
-    #[arg(long, value_name = "SIZE")]
-    memory: Option<MemorySize>,
     /// Print JSON, one line per answer
     #[arg(long)]
     json: bool,
@@ -56,8 +53,7 @@ impl Merge {
         let existing = replacing(self.force);
         check_writable(&self.out, existing)?;
         let (parts, is_model) = self.parts()?;
-        let advice = "allow more (--memory), or merge on a machine that has more";
-        let memory = MemoryGuard::new(self.memory, advice);
+        let memory = MemoryGuard::new("merge on a machine that has more");
         let (text, done) = if is_model {
             model_file(&self.out)?;
             let mut merge = ModelMerge::default();

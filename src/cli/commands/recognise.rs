@@ -227,7 +227,7 @@ impl Namer {
         let Some(shape) = answer.shape else {
             return Ok(None);
         };
-        let memory = MemoryGuard::new(None, "train the model in coarser steps to see poses");
+        let memory = MemoryGuard::new("train the model in coarser steps to see poses");
         let poses = memory.limit(&ToTheEnd, |progress| {
             self.model.pose_of(shape, touch, progress)
         });

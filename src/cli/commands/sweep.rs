@@ -21,7 +21,7 @@ use taxel_core::source::Source;
 use taxel_core::sweep::{Shard, Sweep as Sweeping, SweepResult};
 use taxel_files::formats::json;
 use taxel_files::formats::value::{counted, grouped};
-use taxel_files::memory::{MemoryGuard, MemorySize};
+use taxel_files::memory::MemoryGuard;
 use taxel_files::storage::{Existing, NewFile, PoseFile, atlas_path, check_writable, write_atlas};
 
 use crate::cli::Context;
@@ -91,9 +91,6 @@ pub(crate) struct Sweep {
     /// Threads; default all cores
     #[arg(long, value_name = "N", value_parser = whole::<u16>(1..=1024))]
     jobs: Option<u16>,
-    /// Most memory to use, such as 500M or 2G; default all that is free
-    #[arg(long, value_name = "SIZE")]
-    memory: Option<MemorySize>,
     /// Compute only shard K of N of the grid
     #[arg(long, value_name = "K/N", value_parser = parse_shard)]
     shard: Option<Shard>,
@@ -119,7 +116,7 @@ impl Sweep {
         if let Some(file) = &self.atlas {
             check_writable(file, existing)?;
         }
-        let memory = MemoryGuard::new(self.memory, TOO_LITTLE_MEMORY);
+        let memory = MemoryGuard::new(TOO_LITTLE_MEMORY);
         let new = |path| PoseFile::new(path, &grid, existing);
         let mut poses = self.poses.as_ref().map(new).transpose()?;
         let shard = self.shard.unwrap_or(Shard::WHOLE);

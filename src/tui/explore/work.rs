@@ -120,7 +120,7 @@ pub(super) fn sweep(app: &mut App, grid: PoseGrid) {
                 running.progress = Some((poses, elapsed));
             }
         });
-        let memory = MemoryGuard::new(None, COARSER);
+        let memory = MemoryGuard::new(COARSER);
         let swept = memory.limit(progress, |progress| {
             Sweep::new(&grid).with_progress(progress).run()
         });

@@ -456,7 +456,7 @@ impl FoundModel {
                 set, steps, cache, ..
             } => (set, steps, cache),
         };
-        let memory = MemoryGuard::new(None, "train a model of fewer shapes (taxel model train)");
+        let memory = MemoryGuard::new("train a model of fewer shapes (taxel model train)");
         let parts = memory.limit(progress, |progress| {
             let shapes = set.shapes.iter();
             let parts = shapes.map(|shape| part(shape, steps, cache.as_ref(), progress));

@@ -135,7 +135,7 @@ impl Separate {
         }
         let more = self.want.map_or(0, |_| REFINED);
         let points = sizes.len() as u64 + more;
-        let memory = MemoryGuard::new(None, "take fewer shapes, smaller sizes or coarser steps");
+        let memory = MemoryGuard::new("take fewer shapes, smaller sizes or coarser steps");
         let by = (self.jobs, memory, self.table.quiet);
         let separated = trained(separation.touches() * points, by, |progress| {
             let at = |&size: &f64| separation.at(axis, size, threshold, progress);

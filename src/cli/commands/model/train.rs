@@ -10,7 +10,7 @@ use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
 use taxel_core::sweep::Shard;
 use taxel_files::formats::{Name, json};
-use taxel_files::memory::{MemoryGuard, MemorySize};
+use taxel_files::memory::MemoryGuard;
 use taxel_files::storage::{ModelChoice, check_writable, save_model};
 
 use crate::cli::Context;
@@ -77,9 +77,6 @@ pub(crate) struct Train {
     /// Threads; default all cores
     #[arg(long, value_name = "N", value_parser = whole::<u16>(1..=1024))]
     jobs: Option<u16>,
-    /// Most memory to use, such as 500M or 2G; default all that is free
-    #[arg(long, value_name = "SIZE")]
-    memory: Option<MemorySize>,
     /// Compute only shard K of N of the grid
     #[arg(long, value_name = "K/N", value_parser = parse_shard)]
     shard: Option<Shard>,
@@ -116,7 +113,7 @@ impl Train {
             (None, Some(path)) => check_writable(path, existing)?,
             (None, None) => {}
         }
-        let memory = MemoryGuard::new(self.memory, TOO_LITTLE_MEMORY);
+        let memory = MemoryGuard::new(TOO_LITTLE_MEMORY);
         let by = (self.jobs, memory, self.quiet);
         let model = trained(training.poses(), by, |progress| {
             if !self.quiet {
