@@ -73,7 +73,6 @@ no active taxels, so no regions to describe
             "{\"imprint\":[\"...\",\"...\"],\"na\":0,\"regions\":[]}\n",
             note,
         ),
-        ("--export - --format txt", "...\n...\n", note),
     ] {
         let run = taxel(&format!("{figure} {form}"), "");
         assert_eq!(

@@ -2,8 +2,6 @@
 
 use serde_json::Value;
 
-use super::array::array;
-use super::model::Place;
 use super::{Run, misused, sh, taxel};
 
 /// Returns the path of a sample from the tests of recordings.
@@ -115,7 +113,7 @@ fn frames_are_chosen_by_number_label_or_sum() {
     unanswered(
         "tekscan.asf",
         "--label 0 --at-least 9",
-        "no frame is labelled 0; the labels go from 1 to 3",
+        "no frame is labelled 0",
     );
 }
 
@@ -264,151 +262,22 @@ fn whole_frames_before_damage_are_answered_then_the_damage_is_reported() {
 }
 
 #[test]
-fn frames_are_exported_with_their_number_and_saved() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("touch.svg");
-    let flags = format!("--all --at-least 9 --heat --export {}", file.display());
-    let run = frames("tekscan.asf", &flags);
+fn values_are_shown_as_shades_above_the_imprint() {
+    let run = frames("tekscan.asf", "--all --at-least 9 --heat");
     assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
-    for number in 0..3 {
-        let svg = folder.path().join(format!("touch-{number}.svg"));
-        let svg = std::fs::read_to_string(svg).expect("it is written");
-        assert!(
-            svg.contains("class=\"described-taxels\"") && svg.contains("x / mm"),
-            "{svg}"
-        );
-    }
-    assert!(run.stdout.contains("0 ░▒▓█ 20 raw\n"), "{}", run.stdout);
-    assert!(
-        run.stdout
-            .contains("tekscan.asf, frame 1 (label 2), 0.05 s\n"),
-        "{}",
-        run.stdout
-    );
-    let library = folder.path().display();
-    let line = format!(
-        "frames {} --peak --at-least 9 --save thumb --library {library}",
-        sample("tekscan.asf")
-    );
-    assert_eq!(taxel(&line, "").status, Some(0));
-    let shown = taxel(
-        &format!("library show thumb --json --library {library}"),
-        "",
-    );
-    assert_eq!(answers(&shown)[0]["na"], 4);
-}
-
-#[test]
-fn the_recording_being_read_is_never_replaced() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let (plain, numbered) = (
-        folder.path().join("rec.npy"),
-        folder.path().join("rec-1.npy"),
-    );
-    let frames = array("(3, 2, 2)", false, &[1.0, 0.0, 9.0, 1.0].repeat(3));
-    std::fs::write(&numbered, &frames).expect("written");
-    std::fs::hard_link(&numbered, &plain).expect("linked");
-    let [plain, numbered] = [&plain, &numbered].map(|path| path.to_str().expect("UTF-8"));
-    for (flags, target) in [
-        (format!("{plain} --noise-report --export {plain}"), plain),
-        (format!("{numbered} --frame 1 --export {plain}"), numbered),
-        // Nothing is written, not even the first frame.
-        (format!("{numbered} --all --export {plain}"), numbered),
-        (format!("- --peak --export {plain}"), ""),
+    for part in [
+        "0 ░▒▓█ 20 raw\n",
+        "tekscan.asf, frame 1 (label 2), 0.05 s\n",
     ] {
-        let line = format!("frames {flags} --at-least 2 --force");
-        let arguments: Vec<&str> = line.split_whitespace().collect();
-        let mut command = super::program(&arguments, "C.UTF-8");
-        command.stdin(std::fs::File::open(plain).expect("there is one"));
-        let run = command.output().expect("the program runs");
-        if target.is_empty() {
-            assert_eq!(run.status.code(), Some(0), "frame 0 has another name");
-        } else {
-            let message = String::from_utf8(run.stderr).expect("UTF-8");
-            let expected =
-                format!("error: {target}: is the recording being read; export to another file\n");
-            assert_eq!((run.status.code(), message), (Some(1), expected), "{flags}");
-        }
-        assert_eq!(std::fs::read(plain).expect("there"), frames, "{flags}");
-        let first = folder.path().join("rec-0.npy");
-        assert_eq!(first.exists(), target.is_empty(), "{flags}");
+        assert!(run.stdout.contains(part), "{}", run.stdout);
     }
 }
 
 #[test]
-fn no_frame_is_exported_if_a_later_one_cannot_be() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let taken = folder.path().join("touch-2.txt");
-    std::fs::write(&taken, "mine").expect("written");
-    let flags = format!(
-        "--all --at-least 9 --export {}/touch.txt",
-        folder.path().display()
-    );
-    let message = format!(
-        "{:?} already exists; --force replaces it",
-        taken.display().to_string()
-    );
-    unanswered("tekscan.asf", &flags, &message);
-    let files = std::fs::read_dir(&folder).expect("a folder").count();
-    assert_eq!(files, 1);
-    let forced = frames("tekscan.asf", &format!("{flags} --force"));
-    assert_eq!((forced.status, forced.stderr.as_str()), (Some(0), ""));
-}
-
-/// Rows of four cells, each with a label; 7 occurs twice.
-const LABELLED: &str = "label,s0,s1,s2,s3\n7,1,0,0,0\n7,1,1,0,0\n8,1,1,1,0\n";
-
-#[test]
-fn a_frame_is_saved_or_exported_by_its_label() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let library = folder.path().join("library");
-    let file = folder.path().join("foo.svg");
-    let of_label = |label: u8, flags: &str| {
-        let (library, flags) = (
-            library.display(),
-            flags.replace("FILE", file.to_str().expect("UTF-8")),
-        );
-        let line = "frames - --rows 2 --columns 2 --at-least 1 --label";
-        taxel(
-            &format!("{line} {label} {flags} --library {library}"),
-            LABELLED,
-        )
-    };
-    for flags in [
-        "--save foo",
-        "--save foo --force",
-        "--export FILE",
-        "--export - --format svg",
-    ] {
-        let run = of_label(7, flags);
-        let message = "frames 0 and 1 are both labelled 7; choose one with --frame";
-        assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""), "{flags}");
-        assert_eq!(
-            run.stderr,
-            format!("error: standard input: {message}\n"),
-            "{flags}"
-        );
-    }
-    assert!(!library.exists(), "nothing is kept");
-    let left = std::fs::read_dir(folder.path()).expect("a folder").count();
-    assert_eq!(left, 0, "nothing is kept");
-    // Without these flags both frames are answered; a label of one frame is enough for them.
-    assert_eq!(answers(&of_label(7, "--json")).len(), 2);
-    let svg = of_label(8, "--save foo --export - --format svg");
-    assert_eq!(svg.stdout.matches("<svg xmlns").count(), 1);
-    assert!(library.exists());
-}
-
-#[test]
-fn only_one_frame_can_be_exported_to_standard_output() {
-    let line = format!("frames {} --at-least 9", sample("tekscan.asf"));
-    misused(
-        &format!("{line} --all --export - --format svg"),
-        "the argument '--all' cannot be used with '--export -', which takes one frame; \
-         with a name each frame has a file of its own\n",
-    );
-    let run = taxel(&format!("{line} --peak --export - --format txt"), "");
-    assert_eq!(run.stdout, ".....\n..#..\n.###.\n.....\n");
+fn all_frames_of_a_label_are_answered() {
+    let labelled = "label,s0,s1,s2,s3\n7,1,0,0,0\n7,1,1,0,0\n8,1,1,1,0\n";
+    let line = "frames - --rows 2 --columns 2 --at-least 1 --json --label 7";
+    assert_eq!(answers(&taxel(line, labelled)).len(), 2);
 }
 
 #[test]
@@ -462,20 +331,16 @@ fn the_noise_of_a_recording_is_reported() {
     );
     assert_eq!(answer["stuck_on"], serde_json::json!([[4, 4]]));
     assert_eq!(answer["stuck_off"], serde_json::json!([]));
-    let folder = tempfile::tempdir().expect("a folder");
-    let mask = folder.path().join("mask.txt");
-    let line = format!(
-        "frames - --noise-report --at-least 5 --export {}",
-        mask.display()
+    assert_eq!(
+        answer["mask"],
+        serde_json::json!([".....", ".....", ".....", ".....", "....#"])
     );
-    let run = taxel(&line, text);
+    let run = taxel("frames - --noise-report --at-least 5", text);
     assert!(run.stdout.contains("stuck on: 4,4\n"), "{}", run.stdout);
     let flips = ": a taxel changed for a single frame in 3 of 694 cases\n";
     assert!(run.stdout.contains(flips), "{}", run.stdout);
-    let written = std::fs::read_to_string(&mask).expect("it is written");
-    assert_eq!(written, ".....\n.....\n.....\n.....\n....#\n");
     // Flags that have no meaning for many frames are refused, not ignored.
-    for flag in ["--save mask", "--model figures", "--heat", "--pitch 2"] {
+    for flag in ["--model figures", "--heat", "--pitch 2"] {
         let line = format!("frames - --noise-report --at-least 5 {flag}");
         misused(&line, "the argument '--noise-report' cannot be used with");
     }
@@ -669,45 +534,4 @@ fn public_tables_are_read_as_expected_or_refused() {
             }
         }
     }
-}
-
-/// Touches of the rectangles of the model, of one that it does not have, and frames that are left out.
-#[test]
-fn answers_are_counted_against_the_labels_of_a_recording() {
-    let place = Place::with_model();
-    let rectangle = |length, width, angle| {
-        format!(
-            "{{\"figure\":\"rectangle\",\"length\":{length},\"width\":{width},\"x0\":4.13,\"y0\":5.47,\"angle\":{angle}}}\n"
-        )
-    };
-    let touches = [
-        ("D", rectangle(4.2, 4.2, 33.3)),
-        ("d", rectangle(4.2, 4.2, 71.9)),
-        ("c", rectangle(6.2, 3.0, 8.6)),
-        // Not what it says, and not in the model.
-        ("a", rectangle(4.2, 4.2, 12.1)),
-        ("plate", rectangle(9.0, 7.0, 40.4)),
-        ("", rectangle(4.2, 4.2, 12.1)),
-    ];
-    let lines: String = touches.iter().map(|(_, line)| line.as_str()).collect();
-    let cells = (0..16).flat_map(|row| (0..16).map(move |column| format!(",r{row}c{column}")));
-    let mut table = format!("label{}\n", cells.collect::<String>());
-    for ((label, _), answer) in touches.iter().zip(answers(&place.run("batch", &lines))) {
-        let rows = answer["imprint"].as_array().expect("rows").iter();
-        let text: String = rows.map(|row| row.as_str().expect("a row")).collect();
-        let values = text
-            .chars()
-            .map(|taxel| if taxel == '#' { ",9" } else { ",0" });
-        table += &format!("{label}{}\n", values.collect::<String>());
-    }
-    table += &format!("d{}\n", ",0".repeat(256));
-    place.write("labelled.csv", &table);
-    let named = "labelled.csv --all --at-least 5 --model r --expect-labels";
-    let lines = [
-        named,
-        &format!("{named} --json"),
-        &format!("{named} --csv"),
-        &format!("{named} --least 200"),
-    ];
-    insta::assert_snapshot!("labels", place.transcript("frames", &lines));
 }

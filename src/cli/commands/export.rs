@@ -1,12 +1,12 @@
 //! `taxel export`, and `--save` and `--export` of other commands: writes an imprint in a format for other programs, or
-//! draws it. Standard output, `-`, gets the same bytes as a file.
+//! draws it.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 use clap::ArgGroup;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use taxel_core::imprint::Imprint;
 use taxel_core::source::Source;
 use taxel_files::formats::{Content, Drawing, ExportFormat, Name, StoredShape};
@@ -29,7 +29,7 @@ only with --force. To export a figure, use 'taxel figure ... --export'.
 Examples:
   taxel export washer washer.svg --pitch 2.5
   taxel export imprint.txt imprint.npy --force
-  taxel export key - --format csv
+  taxel export key key.pbm
   taxel figure hexagon --angle 17 --export hexagon.svg";
 
 /// Write a shape for other programs, or draw it
@@ -39,14 +39,11 @@ pub(crate) struct ExportCommand {
     /// Shape of the library, or file; '-' for standard input
     #[arg(value_name = "NAME|FILE", value_parser = name_or_path())]
     what: OsString,
-    /// File to write; '-' for standard output
-    #[arg(value_name = "TO")]
-    to: PathBuf,
+    /// File to write
+    #[arg(value_name = "TO", value_parser = export())]
+    to: Export,
     #[command(flatten)]
     pitch: PitchFlag,
-    /// Format, if not given by the extension
-    #[arg(long, value_name = "FORMAT", value_parser = format())]
-    format: Option<&'static ExportFormat>,
     /// Replace an existing file
     #[arg(long)]
     force: bool,
@@ -54,7 +51,6 @@ pub(crate) struct ExportCommand {
 
 impl ExportCommand {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
-        let export = Export::new(self.to, self.format)?;
         let pitch = self.pitch.pitch(&cx.settings)?;
         let drawing = match cx.shelf.find(&self.what)? {
             Content::Imprint(imprint) => {
@@ -68,21 +64,10 @@ impl ExportCommand {
                 drawing(&shape.imprint, source, &title, pitch)
             }
         };
-        let content = (export.format.write)(&drawing);
-        let Some(path) = &export.path else {
-            return cx.write(&content);
-        };
-        storage::write(path, &content, replacing(self.force))?;
-        cx.print(&(written(path) + "\n"))
+        let content = (self.to.format.write)(&drawing);
+        storage::write(&self.to.path, &content, replacing(self.force))?;
+        cx.print(&(written(&self.to.path) + "\n"))
     }
-}
-
-fn format() -> impl TypedValueParser<Value = &'static ExportFormat> {
-    let names = ExportFormat::ALL.iter().map(|format| format.name);
-    PossibleValuesParser::new(names).try_map(|name| {
-        let mut all = ExportFormat::ALL.iter();
-        all.find(|format| format.name == name).ok_or("unknown")
-    })
 }
 
 pub(crate) fn replacing(force: bool) -> Existing {
@@ -115,41 +100,18 @@ pub(crate) fn drawing(
 
 /// The file that an imprint is written to.
 #[derive(Clone, Debug)]
-pub(crate) struct Export {
-    /// Its path; None for standard output.
-    pub(crate) path: Option<PathBuf>,
-    pub(crate) format: &'static ExportFormat,
+struct Export {
+    path: PathBuf,
+    format: &'static ExportFormat,
 }
 
-impl Export {
-    fn new(path: PathBuf, format: Option<&'static ExportFormat>) -> Result<Self, Failure> {
-        let path = Some(path).filter(|path| path.as_os_str() != "-");
-        let of_path = || path.as_deref().and_then(ExportFormat::of_path);
-        let format = format.or_else(of_path).ok_or_else(|| {
-            Failure::usage(match &path {
-                None => "writing to standard output needs '--format'".to_owned(),
-                Some(path) => format!(
-                    "'{}': expected a name that ends in .txt, .pbm, .csv, .npy or .svg, or a '--format'",
-                    path.display()
-                ),
-            })
-        })?;
-        Ok(Self { path, format })
-    }
-
-    /// The file of one of several imprints: its name has the number at its end.
-    pub(crate) fn numbered(&self, number: u64) -> Self {
-        let path = self.path.as_ref().map(|path| {
-            let mut name = path.file_stem().unwrap_or(path.as_os_str()).to_owned();
-            name.push(format!("-{number}"));
-            if let Some(ending) = path.extension() {
-                name.push(".");
-                name.push(ending);
-            }
-            path.with_file_name(name)
-        });
-        Self { path, ..*self }
-    }
+fn export() -> impl TypedValueParser<Value = Export> {
+    OsStringValueParser::new().try_map(|name| {
+        let path = PathBuf::from(name);
+        let format = ExportFormat::of_path(&path)
+            .ok_or("expected a name that ends in .txt, .pbm, .csv, .npy or .svg")?;
+        Ok::<_, &str>(Export { path, format })
+    })
 }
 
 /// The flags that keep what a command makes.
@@ -159,81 +121,39 @@ pub(crate) struct KeepFlags {
     /// Also store the shape in the library
     #[arg(long, value_name = "NAME", value_parser = Name::new, help_heading = "Library")]
     save: Option<Name>,
-    /// Write the imprint, or a drawing of it; '-' for standard output, instead of the table
-    #[arg(long, value_name = "FILE", help_heading = "Export")]
-    export: Option<PathBuf>,
-    /// Format, if not given by the extension
-    #[arg(long, value_name = "FORMAT", value_parser = format(), requires = "export", help_heading = "Export")]
-    format: Option<&'static ExportFormat>,
+    /// Write the imprint, or a drawing of it
+    #[arg(long, value_name = "FILE", value_parser = export(), help_heading = "Export")]
+    export: Option<Export>,
     /// Replace an existing shape or file
     #[arg(long, requires = "kept")]
     force: bool,
 }
 
 impl KeepFlags {
-    /// Checks the flags. `json` tells whether the answer is JSON, too.
-    pub(crate) fn kept(&self, json: bool) -> Result<Kept, Failure> {
-        let export = self.export.clone();
-        let export = export
-            .map(|path| Export::new(path, self.format))
-            .transpose()?;
-        if json && export.as_ref().is_some_and(|export| export.path.is_none()) {
-            let text = "the argument '--json' cannot be used with '--export -': both write to standard output";
-            return Err(Failure::usage(text));
-        }
-        Ok(Kept {
-            save: self.save.clone(),
-            existing: replacing(self.force),
-            export,
-        })
-    }
-}
-
-/// What is kept of a touch.
-#[derive(Clone, Debug)]
-pub(crate) struct Kept {
-    pub(crate) save: Option<Name>,
-    pub(crate) existing: Existing,
-    pub(crate) export: Option<Export>,
-}
-
-impl Kept {
-    /// The same, for one of several imprints.
-    pub(crate) fn numbered(&self, number: u64) -> Self {
-        Self {
-            save: self.save.clone(),
-            export: self.export.as_ref().map(|export| export.numbered(number)),
-            ..*self
-        }
-    }
-
     /// Keeps a touch: the file is written, then the shape is stored, then the file gets its name, which hardly ever
-    /// fails. So both are kept or neither. Notes of what was kept are added to `notes`. Returns the content for
-    /// standard output that takes the place of the answer, if any.
+    /// fails. So both are kept or neither. Returns what was kept, a line each.
     pub(crate) fn keep(
         &self,
         drawing: impl FnOnce() -> Drawing,
         shape: impl FnOnce(Name) -> StoredShape,
         shelf: &Shelf,
-        notes: &mut Vec<String>,
-    ) -> Result<Option<Vec<u8>>, Failure> {
-        let export = self.export.as_ref();
-        let content = export.map(|export| (export.format.write)(&drawing()));
-        let file = export
-            .and_then(|export| export.path.as_ref())
-            .zip(content.as_ref());
-        let file = file.map(|(path, content)| NewFile::with_content(path, content, self.existing));
+    ) -> Result<Vec<String>, Failure> {
+        let existing = replacing(self.force);
+        let mut kept = Vec::new();
+        let file = self.export.as_ref().map(|export| {
+            let content = (export.format.write)(&drawing());
+            NewFile::with_content(&export.path, &content, existing)
+        });
         let file = file.transpose()?;
         if let Some(name) = &self.save {
-            let saved = shelf.save(&shape(name.clone()), self.existing)?;
-            notes.push(format!("saved as {saved}"));
+            let saved = shelf.save(&shape(name.clone()), existing)?;
+            kept.push(format!("saved as {saved}"));
         }
-        let Some(file) = file else {
-            return Ok(content);
-        };
-        notes.push(written(&file.path));
-        file.persist()?;
-        Ok(None)
+        if let Some(file) = file {
+            kept.push(written(&file.path));
+            file.persist()?;
+        }
+        Ok(kept)
     }
 }
 

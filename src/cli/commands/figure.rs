@@ -9,7 +9,7 @@ use taxel_files::formats::StoredShape;
 use crate::cli::Context;
 use crate::cli::arguments::flags::one_of;
 use crate::cli::arguments::parameters::{FigureFlags, SensorFlags};
-use crate::cli::commands::export::{KeepFlags, Kept, drawing};
+use crate::cli::commands::export::{KeepFlags, drawing};
 use crate::cli::failure::Failure;
 use crate::cli::output::report;
 
@@ -47,25 +47,22 @@ impl Figure {
         let sensor = self.sensor.sensor(cx.settings.sensor.sensor)?;
         let figure = Source::Figure(self.values.figure(self.kind, &sensor)?);
         let pitch = self.sensor.pitch(&cx.settings)?.of(Some(&sensor));
-        let kept = self.keep.kept(self.json)?;
-        touch(&figure, sensor, pitch, self.json, &kept, cx)
+        touch(&figure, sensor, pitch, self.json, &self.keep, cx)
     }
 }
 
-/// Touches a shape and prints the imprint with its descriptors, or the exported file instead. What the sensor cuts off
-/// and what else was done is said in the table, or without one, on standard error.
+/// Touches a shape and prints the imprint with its descriptors. What the sensor cuts off and what else was done is said
+/// in the table, or with JSON, on standard error.
 pub(crate) fn touch(
     source: &Source,
     sensor: Sensor,
     pitch: Option<f64>,
     json: bool,
-    kept: &Kept,
+    keep: &KeepFlags,
     cx: &Context,
 ) -> Result<(), Failure> {
     let imprint = Plane::new(sensor).touch(source);
     let made = source.to_string();
-    let mut notes: Vec<String> = report::beyond(source, &sensor).into_iter().collect();
-    let beyond = notes.len();
     let drawn = || drawing(&imprint, Some(source), &made, pitch);
     let shape = |name| StoredShape {
         name,
@@ -73,15 +70,16 @@ pub(crate) fn touch(
         imprint,
         source: Some(source.clone()),
     };
-    let instead = kept.keep(drawn, shape, &cx.shelf, &mut notes)?;
-    if instead.is_none() && !json {
-        notes.insert(beyond, report::size(&imprint, Some(&sensor), pitch));
-        notes.insert(0, made);
-        return cx.print(&report::table(&imprint, &notes, pitch));
+    let kept = keep.keep(drawn, shape, &cx.shelf)?;
+    let beyond = report::beyond(source, &sensor);
+    if json {
+        cx.print(&report::json(&imprint))?;
+        beyond.iter().chain(&kept).for_each(|note| cx.note(note));
+        return Ok(());
     }
-    cx.write(&instead.unwrap_or_else(|| report::json(&imprint).into_bytes()))?;
-    for note in &notes {
-        cx.note(note);
-    }
-    Ok(())
+    let mut lines = vec![made];
+    lines.extend(beyond);
+    lines.push(report::size(&imprint, Some(&sensor), pitch));
+    lines.extend(kept);
+    cx.print(&report::table(&imprint, &lines, pitch))
 }

@@ -21,30 +21,23 @@ use taxel_core::imprint::Imprint;
 use taxel_core::matrix::Matrix;
 use taxel_core::parameter::number::short;
 use taxel_core::progress::stop_if;
-use taxel_core::recognition::Trial;
 use taxel_files::ReadError;
-use taxel_files::formats::name::folded;
+use taxel_files::formats::json;
 use taxel_files::formats::recording::{
     ChannelInfo, Format, FrameAnswer, RecordingEvent, RecordingNote, no_channel, unshaped,
 };
 use taxel_files::formats::value::{counted, decimal, grouped};
-use taxel_files::formats::{StoredShape, json};
-use taxel_files::storage::{self, check_writable};
 
 use crate::cli::arguments::flags::whole;
 use crate::cli::arguments::parameters::PitchFlag;
-use crate::cli::commands::export::{Export, KeepFlags, Kept, drawing, written};
 use crate::cli::commands::frame_flags::FrameFlags;
-use crate::cli::commands::model::Table;
-use crate::cli::commands::model::trial::TrialReport;
 use crate::cli::commands::recognise::{FoundNamer, Namer, NamingFlags};
 use crate::cli::input::recording::{RecordingFile, damaged, noted, refused};
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::count;
 use crate::cli::output::report;
 use crate::cli::output::table::Record;
 use crate::cli::{Context, Failure};
-use crate::frames::{Pipeline, Taring, sensor, unit};
+use crate::frames::{Pipeline, Taring, unit};
 
 #[expect(clippy::struct_excessive_bools, reason = "one for each flag")]
 #[derive(Debug, clap::Args)]
@@ -72,15 +65,11 @@ pub(crate) struct Frames {
     /// How often taxels flip, and which are dead or stuck
     #[arg(long, help_heading = "Frames")]
     noise_report: bool,
-    /// Count the answers of --model against the labels
-    #[arg(long, help_heading = "Recognition", requires_all = ["all", "model"])]
-    #[arg(conflicts_with_all = ["heat", "export"])]
-    expect_labels: bool,
     /// Print JSON, one line per answer
     #[arg(long, conflicts_with_all = ["heat", "csv"])]
     json: bool,
     // A table has a line for each frame and no place for other answers.
-    #[arg(long, conflicts_with_all = ["noise_report", "heat", "save", "export"])]
+    #[arg(long, conflicts_with_all = ["noise_report", "heat", "model"])]
     #[arg(
         help = "Print CSV, one line per frame: force, contact,\ncentre of pressure, descriptors"
     )]
@@ -88,8 +77,6 @@ pub(crate) struct Frames {
     /// Show the values as shades
     #[arg(long, requires = "choice", conflicts_with = "noise_report")]
     heat: bool,
-    #[command(flatten)]
-    keep: KeepFlags,
     #[command(flatten)]
     reading: FrameFlags,
     #[command(flatten)]
@@ -115,14 +102,10 @@ Examples:
   taxel frames recording.csv --all --percent 25 --tare 2 --json
   taxel frames recording.csv --csv --tare 2 > force.csv
   taxel frames recording.csv --frame 3 --low 5 --high 20 --heat --ascii
-  taxel frames recording.csv --peak --at-least 10 --export touch.svg
   taxel frames recording.csv --peak --at-least 10 --model parts --noise 0.01
-  taxel frames labelled.csv --all --at-least 10 --model parts --expect-labels
-  taxel frames recording.csv --noise-report --at-least 10 --export mask.txt
+  taxel frames recording.csv --noise-report --at-least 10
   taxel frames plain.csv --rows 4 --columns 5 --label-column 21 \\
     --time-column 22:ms --crop 1,0,3x3 --json";
-
-const EXPORT: &str = "Write the imprint, or a drawing of it, with the frame's number in the name, such as touch-0.svg for touch.svg; with --noise-report the mask";
 
 const CHOICES: [&str; 5] = ["frame", "label", "peak", "all", "noise_report"];
 
@@ -134,11 +117,6 @@ fn of_answers(arg: Arg) -> Arg {
         "model" | "noise" | "tolerance" | "pitch_mm" => {
             arg.requires("choice").conflicts_with("noise_report")
         }
-        "save" => arg
-            .requires("choice")
-            .conflicts_with_all(["all", "noise_report"]),
-        "export" => arg.requires("choice").help(EXPORT),
-        "force" => arg.help("Replace existing shapes and files, but never the recording"),
         _ => arg,
     }
 }
@@ -164,19 +142,6 @@ impl Frames {
 
     /// If an error occurs, the answers made before it are still printed.
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
-        if self.csv && self.naming.model.is_some() && !self.expect_labels {
-            return Err(Failure::usage(
-                "the argument '--csv' cannot be used with '--model <MODEL>', except with --expect-labels",
-            ));
-        }
-        let kept = self.keep.kept(self.json)?;
-        let to = kept.export.as_ref().map(|export| &export.path);
-        if self.all && to == Some(&None) {
-            return Err(Failure::usage(
-                "the argument '--all' cannot be used with '--export -', which takes one frame; \
-                 with a name each frame has a file of its own",
-            ));
-        }
         let pipeline = self
             .reading
             .pipeline(&cx.settings.watch_request().pipeline)?;
@@ -192,7 +157,6 @@ impl Frames {
             pipeline,
             namer,
             pitch: self.pitch.pitch(&cx.settings)?.given,
-            kept,
             output: RefCell::new(BufWriter::new(io::stdout().lock())),
         };
         let done = answering.run(recording);
@@ -227,8 +191,6 @@ struct Channel {
     marks: Vec<u64>,
     /// The number of values of a frame.
     values: u64,
-    /// The least and the greatest label.
-    labels: Option<(Label, Label)>,
     /// The frames with the label that is asked for.
     labelled: Vec<u64>,
     /// The first and the last time in seconds.
@@ -330,9 +292,6 @@ impl Channel {
             self.times = Some((first, time));
         }
         if let Some(label) = &frame.label {
-            let ends = self.labels.take();
-            let (least, most) = ends.unwrap_or_else(|| (label.clone(), label.clone()));
-            self.labels = Some((least.min(label.clone()), most.max(label.clone())));
             let is_marked = |own: i64| {
                 let mut marks = self.info.marks.iter();
                 marks.any(|mark| i64::try_from(mark.number) == Ok(own))
@@ -404,18 +363,7 @@ impl Channel {
             return "no frames".to_owned();
         }
         match choice {
-            Choice::Label(label) => {
-                let text = format!("no frame is labelled {label}");
-                match &self.labels {
-                    None => {
-                        text + ": the frames have no labels, only numbers; choose one with --frame"
-                    }
-                    Some((least, most)) if least == most => {
-                        format!("{text}; the only label is {least}")
-                    }
-                    Some((least, most)) => format!("{text}; the labels go from {least} to {most}"),
-                }
-            }
+            Choice::Label(label) => format!("no frame is labelled {label}"),
             Choice::Number(number) => match self.frames - 1 {
                 0 => format!("no frame {number}; the recording has only frame 0"),
                 last => format!("no frame {number}, expected 0 to {last}"),
@@ -443,7 +391,6 @@ struct Answering<'a> {
     pipeline: Pipeline,
     namer: Option<Namer>,
     pitch: Option<f64>,
-    kept: Kept,
     output: RefCell<BufWriter<StdoutLock<'static>>>,
 }
 
@@ -494,15 +441,12 @@ impl Answering<'_> {
                 // If frames are missing, the damage is the reason.
                 Err(failure) => return Err(damage.unwrap_or(failure)),
             };
-            if self.asked.csv && !self.asked.expect_labels && index == channels.start {
+            if self.asked.csv && index == channels.start {
                 self.write(FrameAnswer::csv_header())?;
             }
             answered |= if self.asked.noise_report {
                 self.report_noise(&mut recording, index, &mut pipeline)?
-            } else if let Some(namer) = self.namer.as_ref().filter(|_| self.asked.expect_labels) {
-                self.compare_labels(&mut recording, index, &mut pipeline, namer)?
             } else {
-                self.check_kept(&recording, &numbers, channel.frames)?;
                 self.answer(&mut recording, (index, channel), &numbers, &mut pipeline)?
             };
         }
@@ -601,7 +545,7 @@ impl Answering<'_> {
         }
         // Force and contact exist without a threshold, too. There is no default: the meaning of values differs from
         // sensor to sensor.
-        if pipeline.rule().is_none() && (!self.asked.csv || self.asked.expect_labels) {
+        if pipeline.rule().is_none() && !self.asked.csv {
             return Err(self.refused(
                 "the recording has no threshold of its own: set one with --at-least, --percent, \
                  --low and --high, or --deviations",
@@ -657,41 +601,6 @@ impl Answering<'_> {
         })
     }
 
-    /// Checks what can be checked of the frames to keep before the first of them is answered: that their files may be
-    /// written, and that a label means one frame.
-    fn check_kept(
-        &self,
-        recording: &RecordingFile,
-        numbers: &[Range<u64>],
-        frames: u64,
-    ) -> Result<(), Failure> {
-        if let ([first, second, ..], Some(label)) = (numbers, &self.asked.label)
-            && (self.kept.save.is_some() || self.kept.export.is_some())
-        {
-            return Err(self.refused(format!(
-                "frames {} and {} are both labelled {label}; choose one with --frame",
-                first.start, second.start
-            )));
-        }
-        let Some(export) = &self.kept.export else {
-            return Ok(());
-        };
-        let numbers = numbers
-            .iter()
-            .flat_map(|own| own.start..own.end.min(frames));
-        let mut exports = numbers.map(|number| export.numbered(number));
-        exports.try_for_each(|export| self.check(&export, recording))
-    }
-
-    /// Refuses a file that would replace the recording, or that cannot be written.
-    fn check(&self, export: &Export, recording: &RecordingFile) -> Result<(), Failure> {
-        if let Some(path) = &export.path {
-            recording.refuse_as_target(path)?;
-            check_writable(path, self.kept.existing)?;
-        }
-        Ok(())
-    }
-
     /// Answers frames; returns true if there were any. The recording is not read beyond the last of them.
     fn answer(
         &self,
@@ -719,8 +628,7 @@ impl Answering<'_> {
         Ok(answered)
     }
 
-    /// Answers a frame. Notes about it are lines below the matrix; with JSON they go to standard error. An export to
-    /// standard output takes the place of the answer. An empty line separates it from frames before it.
+    /// Answers a frame. An empty line separates it from frames before it.
     fn give(
         &self,
         channel: &Channel,
@@ -741,28 +649,7 @@ impl Answering<'_> {
             return Ok(());
         };
         let (pitch, without_pitch) = self.cell_size(info)?;
-        let heat = self.asked.heat.then_some(processed.tared);
-        let titles = self.titles(info, frame, processed, rule);
-        let mut lines = titles.clone();
-        if !self.asked.json {
-            lines.extend(without_pitch);
-            lines.push(report::size(&imprint, None, pitch));
-        }
-        let drawn = || drawing(&imprint, None, &titles[0], pitch);
-        let shape = |name| StoredShape {
-            name,
-            sensor: sensor(&imprint, pitch),
-            imprint,
-            source: None,
-        };
-        let kept = self.kept.numbered(frame.number);
-        if let Some(content) = kept.keep(drawn, shape, &self.cx.shelf, &mut lines)? {
-            return self.write(content);
-        }
         if self.asked.json {
-            for note in &lines[titles.len()..] {
-                self.cx.note(note);
-            }
             let mut line = json::ascii(&answer).into_bytes();
             match &self.namer {
                 Some(namer) => namer.extend(&mut line, Some(&imprint)),
@@ -770,9 +657,12 @@ impl Answering<'_> {
             }
             return self.write(line);
         }
+        let mut lines = self.titles(info, frame, processed, rule);
+        lines.extend(without_pitch);
+        lines.push(report::size(&imprint, None, pitch));
         let mut text = if again { "\n" } else { "" }.to_owned();
-        if let Some(values) = heat {
-            let charset = Charset::current();
+        if self.asked.heat {
+            let (values, charset) = (processed.tared, Charset::current());
             text += &(report::heat_map(values, &charset.line(&unit(info)), charset) + "\n");
         }
         text += &report::table(&imprint, &lines, pitch);
@@ -831,63 +721,13 @@ impl Answering<'_> {
         }
     }
 
-    /// Names the frames of a channel that have a label and an active taxel, and counts the answers against the labels.
-    fn compare_labels(
-        &self,
-        recording: &mut RecordingFile,
-        index: usize,
-        pipeline: &mut Pipeline,
-        namer: &Namer,
-    ) -> Result<bool, Failure> {
-        let mut trial = Trial::new(&namer.model);
-        let (mut unlabelled, mut empty) = (0_u64, 0_u64);
-        self.each(recording, index, pipeline, |frame, processed| {
-            let imprint = processed.imprint.filter(|imprint| !imprint.is_empty());
-            match (&frame.label, imprint) {
-                (None, _) => unlabelled += 1,
-                (Some(_), None) => empty += 1,
-                (Some(label), Some(imprint)) => {
-                    let label = label.to_string();
-                    let own = folded(&label);
-                    let answer = namer.answer(&[imprint]).answer;
-                    trial.add(&label, |name| folded(name) == own, &answer);
-                }
-            }
-            Ok(ControlFlow::Continue(()))
-        })?;
-        let labelled = trial.known.touches() + trial.foreign.touches();
-        if labelled == 0 {
-            return Err(self.refused("--expect-labels: no frame has a label and an active taxel"));
-        }
-        let report = TrialReport {
-            trial: &trial,
-            noun: "frame",
-            note: format!(
-                "left out: {} without a label, {} without an active taxel",
-                counted(unlabelled, "frame"),
-                counted(empty, "frame")
-            ),
-            keys: vec![
-                ("frames", count(labelled)),
-                ("unlabelled", unlabelled.into()),
-                ("empty", empty.into()),
-            ],
-        };
-        self.write(report.printed(self.asked.json, self.asked.csv))?;
-        Ok(true)
-    }
-
-    /// Reports which taxels of a channel flip or are stuck, and writes the mask of the stuck ones if a file is given.
-    /// Returns false, and reports nothing, if the channel has no frames.
+    /// Reports which taxels of a channel flip or are stuck. Returns false, and reports nothing, if the channel has no frames.
     fn report_noise(
         &self,
         recording: &mut RecordingFile,
         index: usize,
         pipeline: &mut Pipeline,
     ) -> Result<bool, Failure> {
-        if let Some(export) = &self.kept.export {
-            self.check(export, recording)?;
-        }
         let mut counter: Option<FlipCounter> = None;
         self.each(recording, index, pipeline, |_, processed| {
             let counter = counter.get_or_insert_with(|| {
@@ -901,26 +741,11 @@ impl Answering<'_> {
         let Some(found) = counter.map(|counter| counter.finish()) else {
             return Ok(false);
         };
-        let title = format!("{}: dead and stuck taxels", self.name);
-        let mut said = None;
-        if let Some(export) = &self.kept.export {
-            let content = (export.format.write)(&drawing(&found.mask(), None, &title, None));
-            let Some(path) = &export.path else {
-                return self.write(content).map(|()| true);
-            };
-            storage::write(path, &content, self.kept.existing)?;
-            said = Some(written(path));
-        }
-        if self.asked.json {
-            if let Some(said) = said {
-                self.cx.note(&said);
-            }
-            self.write(json::text(&noise_json(&found)) + "\n")?;
+        self.write(if self.asked.json {
+            json::text(&noise_json(&found)) + "\n"
         } else {
-            let said = said.map_or(String::new(), |said| said + "\n");
-            let text = Charset::current().lines(&(said + &noise_text(&found)));
-            self.write(text)?;
-        }
+            Charset::current().lines(&noise_text(&found))
+        })?;
         Ok(true)
     }
 }

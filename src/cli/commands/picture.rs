@@ -50,10 +50,9 @@ pub(crate) struct Picture {
 
 impl Picture {
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
-        let kept = self.keep.kept(self.json)?;
         let (what, values) = (&self.what, &self.values);
         let (source, sensor) = self.outlines.placed(what, values, &self.sensor, cx)?;
         let pitch = self.sensor.pitch(&cx.settings)?.of(Some(&sensor));
-        touch(&source, sensor, pitch, self.json, &kept, cx)
+        touch(&source, sensor, pitch, self.json, &self.keep, cx)
     }
 }

@@ -21,7 +21,6 @@ use taxel_files::formats::recording::{
     Format, ReadOptions, RecordingEvent, RecordingMetadata, RecordingNote, format_of, read,
     read_rows,
 };
-use taxel_files::storage::FileId;
 use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::cli::failure::{Failure, Named};
@@ -33,8 +32,6 @@ const LARGEST_TABLE: u64 = 1 << 20;
 pub(crate) struct RecordingFile {
     pub(crate) name: String,
     file: Box<dyn ReadAgain>,
-    /// The file that holds the content, so that it is not replaced.
-    id: FileId,
     options: ReadOptions,
     metadata: Option<RecordingMetadata>,
     /// What is wrong with the metadata beside it.
@@ -56,25 +53,15 @@ impl RecordingFile {
             }
             Err(error) => (None, Some(error.to_string())),
         };
-        let (id, file) = opened(path).map_err(ReadError::from).named(&name)?;
+        let file = opened(path).map_err(ReadError::from).named(&name)?;
         Ok(Self {
             name,
             file,
-            id,
             options,
             metadata,
             complaint,
             is_damaged: false,
         })
-    }
-
-    /// Refuses to write to the recording, under any path: a recording cannot be made again.
-    pub(crate) fn refuse_as_target(&self, target: &Path) -> Result<(), Failure> {
-        if FileId::behind(target).is_ok_and(|id| id == self.id) {
-            let why = "is the recording being read; export to another file";
-            return Err(refused(&target.to_string_lossy(), why));
-        }
-        Ok(())
     }
 
     pub(crate) fn read(
@@ -170,7 +157,7 @@ trait ReadAgain: Read + Seek {}
 
 impl<T: Read + Seek> ReadAgain for T {}
 
-fn opened(path: &Path) -> io::Result<(FileId, Box<dyn ReadAgain>)> {
+fn opened(path: &Path) -> io::Result<Box<dyn ReadAgain>> {
     let (file, rest): (File, Box<dyn Read>) = if path.as_os_str() == "-" {
         let input = content::standard()?;
         let file = input.as_fd().try_clone_to_owned()?;
@@ -179,13 +166,12 @@ fn opened(path: &Path) -> io::Result<(FileId, Box<dyn ReadAgain>)> {
         let file = File::open(path)?;
         (file.try_clone()?, Box::new(file))
     };
-    let id = FileId::of(&file)?;
     let kind = file.metadata()?;
     // A file is read again from its beginning, so that must be where the shell has it. A pipe cannot be read twice.
     if kind.is_dir() || kind.is_file() && (&file).stream_position()? == 0 {
-        return Ok((id, Box::new(file)));
+        return Ok(Box::new(file));
     }
-    Ok((id, Box::new(SpooledInput::new(rest)?)))
+    Ok(Box::new(SpooledInput::new(rest)?))
 }
 
 /// The most that is copied, in bytes, so that an endless input does not fill the disk.

@@ -9,7 +9,7 @@ mod keeping;
 mod noise;
 mod separate;
 mod train;
-pub(crate) mod trial;
+mod trial;
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -134,7 +134,7 @@ pub(crate) struct TableFlags {
 }
 
 /// An answer in its forms.
-pub(crate) trait Table {
+trait Table {
     fn text(&self) -> String;
 
     /// The lines of the CSV.
@@ -151,15 +151,6 @@ pub(crate) trait Table {
     /// None if there is no drawing of it.
     fn svg(&self) -> Option<String> {
         None
-    }
-
-    /// What is printed.
-    fn printed(&self, as_json: bool, as_csv: bool) -> String {
-        match (as_json, as_csv) {
-            (true, _) => self.json(),
-            (_, true) => self.csv(),
-            _ => self.text(),
-        }
     }
 }
 
@@ -179,7 +170,11 @@ impl TableFlags {
                 cx.note(&written(path));
             }
         }
-        cx.print(&table.printed(self.json, self.csv))
+        cx.print(&match (self.json, self.csv) {
+            (true, _) => table.json(),
+            (_, true) => table.csv(),
+            _ => table.text(),
+        })
     }
 }
 

@@ -1,5 +1,4 @@
-//! What a trial of a model says, in words, as a table and as JSON: of `taxel model confusion --test`, and
-//! of `taxel frames --expect-labels`.
+//! What `taxel model confusion --test` says, in words, as a table and as JSON.
 
 use std::collections::BTreeMap;
 
@@ -13,22 +12,19 @@ use taxel_files::formats::value::{counted, percent};
 use crate::cli::commands::model::Table;
 use crate::cli::commands::model::confusion::square;
 use crate::cli::output::evaluation::{cell, count, matrix_csv, shares};
-use crate::cli::output::table::{Record, table};
+use crate::cli::output::table::table;
 
-pub(crate) struct TrialReport<'a> {
-    pub(crate) trial: &'a Trial,
-    /// What was named, such as `touch`.
-    pub(crate) noun: &'static str,
-    /// How the touches were drawn, or which frames are left out.
-    pub(crate) note: String,
-    /// The same at the beginning of JSON.
-    pub(crate) keys: Vec<(&'static str, Value)>,
+pub(super) struct TrialReport<'a> {
+    pub(super) trial: &'a Trial,
+    /// The touches of each shape.
+    pub(super) each: u64,
+    pub(super) seed: u64,
 }
 
 #[derive(Serialize)]
 struct TrialJson<'a> {
-    #[serde(flatten)]
-    keys: Record<'a>,
+    test: u64,
+    seed: u64,
     #[serde(flatten)]
     known: TallyJson<'a>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -83,7 +79,7 @@ impl TrialReport<'_> {
         });
         let exact = ("fits exactly", exact.into(), &*median);
         let counts = counts.iter().copied().chain([exact]);
-        let title = format!("{} of {of}\n", counted(touches, self.noun));
+        let title = format!("{} of {of}\n", counted(touches, "touch"));
         title + &shares(touches, counts)
     }
 
@@ -132,7 +128,8 @@ impl Table for TrialReport<'_> {
             ];
             text += &self.summary(foreign, "foreign shapes", &counts);
         }
-        text + &self.note + "\n\n" + &self.confusion()
+        let (each, seed) = (counted(self.each, "random touch"), self.seed);
+        text + &format!("{each} of each shape, seed {seed}\n\n") + &self.confusion()
     }
 
     fn csv(&self) -> String {
@@ -144,7 +141,8 @@ impl Table for TrialReport<'_> {
     fn json(&self) -> String {
         let known = &self.trial.known;
         let answer = TrialJson {
-            keys: Record(self.keys.clone()),
+            test: self.each,
+            seed: self.seed,
             known: TallyJson::of(known, Some(known.unknown())),
             foreign: self.foreign().map(|foreign| TallyJson::of(foreign, None)),
         };
