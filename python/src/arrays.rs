@@ -241,7 +241,7 @@ pub(crate) fn within_memory<T: Send>(
     advice: &'static str,
     work: impl FnOnce(&dyn Progress) -> T + Send,
 ) -> PyResult<T> {
-    let memory = MemoryGuard::new(None, advice);
+    let memory = MemoryGuard::new(advice);
     let done = interruptible(py, |stopped| {
         memory.limit(&|_| stop_if(stopped.load(Ordering::Relaxed)), work)
     })?;
