@@ -1,5 +1,4 @@
-//! Finds the descriptors that hardly depend on where and how a figure lies, which is the purpose of the paper's
-//! descriptors.
+//! Finds the descriptors that hardly depend on where and how a figure lies.
 //!
 //! Each of the seven figures is swept over the paper's grid of 3.6 million poses. For each descriptor, this prints the
 //! coefficient of variation in percent, which is the standard deviation over the mean: a value near 0 means a

@@ -1,8 +1,8 @@
 //! The paper's experiment with positions: how many different imprints does one ring leave?
 //!
-//! The paper moved the ring of its Fig. 1 by hand to 56 positions, which it does not list, and reports 8 imprints
-//! among them. Here the same ring is placed at a lattice of 56 positions over the same cell, at all 10,000 positions
-//! whose coordinates have two decimals, and at the same positions in all cells of the sensor where it fits.
+//! The paper reports 8 imprints of the ring of its Fig. 1 among 56 positions, which it does not list. Here the same
+//! ring is placed at a lattice of 56 positions over one cell, at all 10,000 positions in it whose coordinates have two
+//! decimals, and at the same positions in all cells of the sensor where it fits.
 //!
 //! `cargo run --release --example positions`
 

@@ -2,11 +2,7 @@
 //! `frames` is what both do with frames of a sensor, `naming` how both name touches. They are public only for tests, benchmarks and
 //! other packages of the program; the libraries are `taxel-core` and `taxel-files`.
 
-// Compiles and runs the examples of the README and of the guide to the library as tests of the documentation.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
-
+// Compiles and runs the examples of the guide to the library as tests of the documentation.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/library.md")]
 struct LibraryGuide;

@@ -48,28 +48,32 @@ impl Explain {
     }
 
     fn lines(&self, width: u16) -> Vec<String> {
-        let key = DESCRIPTORS[self.descriptor].key;
-        let section = GLOSSARY.split_once(&format!("<a id=\"{key}\"></a>\n"));
-        let mut text = section.map_or("", |(_, text)| text);
-        for next in ["\n<a id=", "\n## Other"] {
-            text = text.split(next).next().unwrap_or(text);
-        }
+        let own = &DESCRIPTORS[self.descriptor];
+        let anchor = format!("id=\"{}\"></a>", own.key);
+        let symbol = format!("**{}**", own.symbol);
+        let mut sections = GLOSSARY.split("\n<a ");
+        let section = sections.find(|section| section.contains(&anchor));
+        let text = section.unwrap_or_default();
         let (mut lines, mut paragraph, mut is_drawing) = (Vec::new(), String::new(), false);
-        // After the heading.
-        for line in text.lines().skip(1).chain([""]) {
+        // After the anchors and the heading.
+        for line in text.lines().skip(2).chain([""]) {
             if line.starts_with("```") {
                 is_drawing = !is_drawing;
             } else if is_drawing {
                 lines.push(line.to_owned());
             } else if line.is_empty() {
-                let broken = broken(&paragraph, width.into()).into_iter();
-                lines.extend(broken.map(str::to_owned));
+                // Other descriptors of the section have paragraphs of their own.
+                if !paragraph.starts_with("**") || paragraph.contains(&symbol) {
+                    let plain = paragraph.replace(['`', '*'], "");
+                    let broken = broken(&plain, width.into()).into_iter();
+                    lines.extend(broken.map(str::to_owned));
+                }
                 paragraph.clear();
                 if lines.last().is_some_and(|last| !last.is_empty()) {
                     lines.push(String::new());
                 }
             } else if !line.starts_with("<!--") {
-                paragraph += &line.replace(['`', '*'], "");
+                paragraph += line;
                 paragraph.push(' ');
             }
         }

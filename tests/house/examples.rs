@@ -18,7 +18,7 @@ mod invariance;
 mod outline;
 #[path = "../../examples/positions.rs"]
 #[expect(dead_code, reason = "its main prints the report")]
-pub(crate) mod positions;
+mod positions;
 #[path = "../../examples/touch.rs"]
 #[expect(dead_code, reason = "its main prints the report")]
 mod touch;

@@ -2,8 +2,9 @@
 //!
 //! A `console` block is run in a folder of its page that holds the samples of the guide. `$` begins a line for the
 //! shell and `>` continues it. What the lines print follows them; a block may also leave all of it out. A `python`
-//! block is run there, too, if Python has the modules that it imports. In an `sh` block is what no test can run, such
-//! as a sensor on a serial line: it is only asked whether `taxel` takes the flags.
+//! block is run there, too, if Python has the modules that it imports, and a `taxel` block is a script for the screen.
+//! In an `sh` block is what no test can run, such as a sensor on a serial line: it is only asked whether `taxel` takes
+//! the flags.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -72,17 +73,21 @@ pub(crate) fn run(page: &Path, text: &str) -> (String, PathBuf) {
                 *code = format!("console\n{}", console(furnished(&folder), lines))
             }
             Some(("python", program)) => python(furnished(&folder), program),
+            Some(("taxel", script)) => {
+                fs::write(furnished(&folder).join("shown.taxel"), script).expect("written");
+                succeeded(&folder, "taxel script --update shown.taxel");
+            }
             _ => {}
         }
     }
     (parts.join("```"), folder)
 }
 
-/// Puts the samples into a folder, unless it is there already.
+/// Puts the samples into a folder, unless it is there already, and the folder that the README calls `examples`.
 fn furnished(folder: &Path) -> &Path {
-    let samples = SAMPLES.display();
+    let (samples, to) = (SAMPLES.display(), folder.display());
     if !folder.exists() {
-        let lines = format!("cp -r '{samples}' '{}'", folder.display());
+        let lines = format!("cp -r '{samples}' '{to}' && ln -s \"$PWD/examples\" '{to}/examples'");
         succeeded(root(), &lines);
     }
     folder

@@ -1,4 +1,4 @@
-//! The drawings and worked values of the glossary, one block for each descriptor.
+//! The drawings and worked values of the glossary, one block for each of its sections.
 //!
 //! Drawings have one character pair for a taxel. Where a line or a point lies between taxels, a drawing has twice the
 //! resolution: four columns and two lines for a taxel, whose centre is in the middle.
@@ -12,101 +12,13 @@ use taxel_files::formats::value;
 use crate::common;
 use crate::docs::{Block, document};
 
-/// The block of every descriptor, by the descriptor's key.
 pub(crate) const BLOCKS: &[Block] = &[
-    ("na", || {
-        let ring = Example::fig_1();
-        block(&ring.taxels(|_, _| None), &ring.says("NA = {na}"))
-    }),
-    ("nae", || {
-        let ring = Example::fig_1();
-        let drawing = ring.taxels(|x, y| (ring.filled(x, y) && !ring.active(x, y)).then_some('o'));
-        let hole = ring.described.nae - ring.described.na;
-        block(
-            &drawing,
-            &ring.says(&format!("NAE = {{na}} + {hole} = {{nae}}")),
-        )
-    }),
-    ("ce", || {
-        let ring = Example::fig_1();
-        let drawing = ring.taxels(|x, y| ring.outline(x, y).then_some('C'));
-        let drawn = drawing.concat().matches('C').count().to_string();
-        assert_eq!(drawn, ring.value("ce"), "the drawing shows what is counted");
-        block(&drawing, &ring.says("CE = {ce}"))
-    }),
-    ("num_x", num_x),
-    ("num_y", num_y),
-    ("cg", || {
-        let ring = Example::fig_1();
-        let mut canvas = ring.canvas();
-        let cg = ring.described.cg();
-        canvas.at(cg.x, cg.y, 'G');
-        let worked = "CG = ({num_x} / {na}, {num_y} / {na}) = ({cg})";
-        block(&canvas.lines(), &ring.says(worked))
-    }),
-    ("p", p),
-    ("f", || {
-        block(
-            &compared("f"),
-            &Example::fig_1().says("F = {p}² / {nae} = {f}"),
-        )
-    }),
-    ("roundness", || {
-        let worked = "Round = 4π · {nae} / {p}² = {roundness}";
-        block(&compared("roundness"), &Example::fig_1().says(worked))
-    }),
-    ("rect", || {
-        let ring = Example::fig_1();
-        let worked = "x from {left} to {right} and y from {top} to {bottom}, shown as {rect}";
-        block(&ring.boxed().lines(), &ring.says(worked))
-    }),
-    ("cd", || {
-        let ring = Example::fig_1();
-        let mut canvas = ring.boxed();
-        let cd = ring.described.cd();
-        canvas.at(cd.x, cd.y, 'D');
-        let worked = "CD = (({left} + {right}) / 2, ({top} + {bottom}) / 2) = ({cd})";
-        block(&canvas.lines(), &ring.says(worked))
-    }),
-    ("area", || {
-        let ring = Example::fig_1();
-        let drawing = ring.taxels(|x, y| Some(if ring.in_rect(x, y) { 'A' } else { '·' }));
-        block(&drawing, &ring.says("Area = {width} · {height} = {area}"))
-    }),
-    ("diagonals", diagonals),
-    ("side_ratio", || {
-        let ring = Example::fig_1();
-        let (width, height) = ring.sides();
-        assert!(width > height, "the worked value is width by height");
-        let mut lines = ring.boxed().lines();
-        let middle = lines.len() / 2;
-        lines[middle] += &format!("   {height}");
-        lines.push(format!("{:>1$}", width, usize::from(width) * 2 + 5));
-        block(
-            &lines,
-            &ring.says("Ratio = {width} / {height} = {side_ratio}"),
-        )
-    }),
-    ("filling", || {
-        let ring = Example::fig_1();
-        let empty = |x, y| ring.in_rect(x, y) && !ring.active(x, y);
-        let drawing = ring.taxels(|x, y| empty(x, y).then_some('-'));
-        block(&drawing, &ring.says("Fill = {na} / {area} = {filling}"))
-    }),
-    ("cg_cd", || {
-        let (corner, drawing) = centres();
-        let [cg, cd, distance] = ["cg", "cd", "cg_cd"].map(|key| corner.value(key));
-        let of_ring = Example::fig_1().says("{cg_cd}");
-        let drawn = format!("from CG ({cg}) to CD ({cd}), CG-CD = {distance}");
-        block(&drawing, &format!("In the drawing: {drawn}. {of_ring}"))
-    }),
-    ("cg_cd_direction", || {
-        let (corner, drawing) = centres();
-        assert_eq!(Example::fig_1().value("cg_cd_direction"), "–");
-        let direction = corner.value("cg_cd_direction");
-        let of_ring = "Fig. 1: none, because CG and CD are the same point.";
-        block(&drawing, &format!("In the drawing: {direction}. {of_ring}"))
-    }),
+    ("taxels", taxels),
+    ("sums", sums),
+    ("outline-length", outline_length),
+    ("form", form),
+    ("rectangle", rectangle),
+    ("centres", centres),
 ];
 
 /// An imprint with one region to describe.
@@ -135,9 +47,9 @@ impl Example {
         value::text((row.measure)(&self.described), row.dimension).unwrap_or_else(|| "–".to_owned())
     }
 
-    /// A worked value of Fig. 1, with values for the keys and sides in braces.
+    /// Text with values for the keys and sides in braces.
     fn says(&self, worked: &str) -> String {
-        let mut text = format!("Fig. 1: {worked}.");
+        let mut text = worked.to_owned();
         for row in DESCRIPTORS {
             text = text.replace(&format!("{{{}}}", row.key), &self.value(row.key));
         }
@@ -160,20 +72,6 @@ impl Example {
         (rect.right - rect.left, rect.bottom - rect.top)
     }
 
-    /// Draws the taxels of the rectangle and a margin of one taxel around it: `sign` if it has one, else `#` for an
-    /// active taxel.
-    fn taxels(&self, sign: impl Fn(u8, u8) -> Option<char>) -> Vec<String> {
-        let rect = self.described.rect;
-        let usual = |x, y| if self.active(x, y) { '#' } else { '·' };
-        let drawn = |x, y| sign(x, y).unwrap_or_else(|| usual(x, y));
-        let row = |y| -> String {
-            let columns = rect.left - 1..=rect.right;
-            columns.map(|x| format!("{} ", drawn(x, y))).collect()
-        };
-        let rows = rect.top - 1..=rect.bottom;
-        rows.map(|y| row(y).trim_end().to_owned()).collect()
-    }
-
     fn active(&self, column: u8, row: u8) -> bool {
         self.region.taxels().get(column, row)
     }
@@ -189,15 +87,10 @@ impl Example {
         self.filled(x, y) && !beside().all(|(x, y)| self.filled(x, y))
     }
 
-    fn in_rect(&self, column: u8, row: u8) -> bool {
-        let rect = self.described.rect;
-        rect.columns().contains(&column) && rect.rows().contains(&row)
-    }
-
     fn canvas(&self) -> Canvas {
         let rect = self.described.rect;
-        let (left, top) = (rect.left - 1, rect.top - 1);
-        let (columns, rows) = (rect.right + 1 - left, rect.bottom + 1 - top);
+        let (left, top) = (rect.left, rect.top);
+        let (columns, rows) = self.sides();
         let lines = vec![vec![' '; usize::from(columns) * 4 + 1]; usize::from(rows) * 2 + 1];
         let mut canvas = Canvas { left, top, lines };
         for row in top..top + rows {
@@ -258,60 +151,81 @@ impl Canvas {
     }
 }
 
-/// A drawing as a block of text, followed by the worked value.
+/// A drawing as a block of text, followed by lines of worked values.
 fn block(drawing: &[String], worked: &str) -> String {
     let drawing = drawing.join("\n");
     let drawing = drawing.trim_end().trim_start_matches('\n');
-    format!("\n```text\n{drawing}\n```\n\n{worked}\n\n")
+    format!("\n```text\n{drawing}\n\n{worked}\n```\n\n")
 }
 
-fn num_x() -> String {
+fn taxels() -> String {
     let ring = Example::fig_1();
     let rect = ring.described.rect;
-    let count = |x| rect.rows().filter(|y| ring.active(x, *y)).count();
-    let line = |head: &str, cell: &dyn Fn(u8) -> String| -> String {
-        let cells = rect.columns().map(|x| format!("{:>5}", cell(x)));
-        format!("{head:<6}{}", cells.collect::<String>())
+    let drawn = |x, y| match (ring.outline(x, y), ring.active(x, y)) {
+        (true, _) => "C ",
+        (false, true) => "# ",
+        (false, false) if ring.filled(x, y) => "o ",
+        (false, false) => "· ",
     };
-    let sign = |x, y| if ring.active(x, y) { "#" } else { "·" };
-    let mut drawing = vec![line("x", &|x| format!("{x}.5"))];
-    drawing.extend(rect.rows().map(|y| line("", &|x| sign(x, y).to_owned())));
-    drawing.push(line("count", &|x| count(x).to_string()));
-    let terms: Vec<_> = rect
-        .columns()
-        .map(|x| format!("{} · {x}.5", count(x)))
-        .collect();
-    block(
-        &drawing,
-        &ring.says(&format!("NumX = {} = {{num_x}}", terms.join(" + "))),
-    )
+    let row = |y| -> String { rect.columns().map(|x| drawn(x, y)).collect() };
+    let rows = rect.rows();
+    let drawing: Vec<String> = rows.map(|y| row(y).trim_end().to_owned()).collect();
+    let counted = |sign| drawing.concat().matches(sign).count();
+    let [outline, inner, hole] = ['C', '#', 'o'].map(counted);
+    let d = &ring.described;
+    let found = [d.ce, d.na, d.nae].map(|count| usize::try_from(count).expect("small"));
+    assert_eq!(
+        [outline, outline + inner, outline + inner + hole],
+        found,
+        "as counted"
+    );
+    let worked = format!(
+        "Fig. 1: NA = {{na}}\n        NAE = {{na}} + {hole} = {{nae}}\n        CE = {{ce}}"
+    );
+    block(&drawing, &ring.says(&worked))
 }
 
-fn num_y() -> String {
+/// The counts in each column and row, with the coordinates that they are multiplied by.
+fn sums() -> String {
     let ring = Example::fig_1();
-    let rect = ring.described.rect;
-    let count = |y| rect.columns().filter(|x| ring.active(*x, y)).count();
-    let width = "  ".repeat(rect.columns().count() + 1);
-    let mut drawing = vec![format!("  y  {width}count")];
+    let (rect, cg) = (ring.described.rect, ring.described.cg());
+    let columns: Vec<u8> = rect.columns().collect();
+    let in_column = |x: &u8| rect.rows().filter(|y| ring.active(*x, *y)).count();
+    let in_row = |y: &u8| rect.columns().filter(|x| ring.active(*x, *y)).count();
+    let line = |head: &str, cell: &dyn Fn(&u8) -> String, end: &str| -> String {
+        let cells: String = columns.iter().map(|x| format!("{:>5}", cell(x))).collect();
+        format!("{head:>5}{cells}  {end:>5}")
+    };
+    let mut drawing = vec![line("y  x", &|x| format!("{x}.5"), "count")];
     for y in rect.rows() {
-        let taxels = rect
-            .columns()
-            .map(|x| if ring.active(x, y) { "# " } else { "· " });
-        let taxels: String = taxels.collect();
-        drawing.push(format!("{y}.5  {taxels}  {:>5}", count(y)));
+        let sign = |x: &u8| if ring.active(*x, y) { "#" } else { "·" }.to_owned();
+        let mut row = line(&format!("{y}.5"), &sign, &in_row(&y).to_string());
+        if (cg.y - f64::from(y) - 0.5).abs() < 0.5 {
+            let between = columns.iter().filter(|x| f64::from(**x) < cg.x).count() * 5 + 7;
+            let at = row.char_indices().nth(between).expect("in the row").0;
+            row.replace_range(at..=at, "G");
+        }
+        drawing.push(row);
     }
-    let terms: Vec<_> = rect
-        .rows()
-        .map(|y| format!("{} · {y}.5", count(y)))
-        .collect();
-    block(
-        &drawing,
-        &ring.says(&format!("NumY = {} = {{num_y}}", terms.join(" + "))),
-    )
+    drawing.push(line(
+        "count",
+        &|x| in_column(x).to_string(),
+        &ring.value("na"),
+    ));
+    let terms = |counts: Vec<(u8, usize)>| {
+        let terms = counts.iter().map(|(at, count)| format!("{count}·{at}.5"));
+        terms.collect::<Vec<_>>().join(" + ")
+    };
+    let of_x = terms(columns.iter().map(|x| (*x, in_column(x))).collect());
+    let of_y = terms(rect.rows().map(|y| (y, in_row(&y))).collect());
+    let worked = format!(
+        "Fig. 1: NumX = {of_x} = {{num_x}}\n        NumY = {of_y} = {{num_y}}\n        CG = ({{num_x}} / {{na}}, {{num_y}} / {{na}}) = ({{cg}})"
+    );
+    block(&drawing, &ring.says(&worked))
 }
 
 /// Draws the length of the outline step by step: neighbouring outline taxels that share the outside are joined.
-fn p() -> String {
+fn outline_length() -> String {
     let ring = Example::fig_1();
     let mut canvas = ring.canvas();
     let mut steps = (0, 0);
@@ -345,36 +259,41 @@ fn p() -> String {
     let counted = ring.described.steps;
     let counted = (counted.straight, counted.diagonal);
     assert_eq!(steps, counted, "the drawing shows what is counted");
-    let worked = format!("P = {} + {} · √2 = {{p}}", steps.0, steps.1);
+    let worked = format!("Fig. 1: P = {} + {} · √2 = {{p}}", steps.0, steps.1);
     block(&canvas.lines(), &ring.says(&worked))
 }
 
-/// Draws three shapes with about the same number of taxels, and writes the value of each below it.
-fn compared(key: &str) -> Vec<String> {
+/// Draws two shapes with 24 taxels each, and writes their values below them.
+fn form() -> String {
     let shapes = [
         "..##../.####./######/######/.####./..##..",
-        "#####/#####/#####/#####/#####",
         "############/############",
     ];
     let shapes = shapes.map(|rows| {
         let drawn = rows.replace('#', "# ").replace('.', "· ");
         let mut lines: Vec<String> = drawn.split('/').map(str::to_owned).collect();
         lines.resize(7, String::new());
-        lines.push(Example::new(&common::grid(rows)).value(key));
+        let example = Example::new(&common::grid(rows));
+        lines.push(example.says("F {f}"));
+        lines.push(example.says("Round {roundness}"));
         lines
     });
     let line = |line: usize| -> String {
         let cells = shapes.iter().map(|shape| format!("{:<17}", shape[line]));
         cells.collect::<String>().trim_end().to_owned()
     };
-    (0..8).map(line).collect()
+    let drawing: Vec<String> = (0..9).map(line).collect();
+    let worked = "Fig. 1: F = {p}² / {nae} = {f}\n        Round = 4π · {nae} / {p}² = {roundness}";
+    block(&drawing, &Example::fig_1().says(worked))
 }
 
-fn diagonals() -> String {
+/// Draws the upright rectangle with its diagonals.
+fn rectangle() -> String {
     let ring = Example::fig_1();
     let mut canvas = ring.boxed();
     let rect = ring.described.rect;
     let (width, height) = ring.sides();
+    assert!(width > height, "the worked ratio is width by height");
     for half in 1..u16::from(height) * 2 {
         let down = f64::from(half) / 2.0;
         let along = down * f64::from(width) / f64::from(height);
@@ -382,35 +301,43 @@ fn diagonals() -> String {
         canvas.at(f64::from(rect.left) + along, y, '\\');
         canvas.at(f64::from(rect.right) - along, y, '/');
     }
-    let values = ring.value("diagonals");
-    let (first, second) = values.split_once(", ").expect("two directions");
-    let angle = "atan({height} / {width})";
-    let worked = format!("{angle} = {first}° and 180° − {angle} = {second}");
-    block(&canvas.lines(), &ring.says(&worked))
+    let cd = ring.described.cd();
+    canvas.at(cd.x, cd.y, 'D');
+    let diagonals = ring.value("diagonals").replace(", ", "° and ");
+    let worked = [
+        "Fig. 1: Rect = x from {left} to {right}, y from {top} to {bottom}, shown as {rect}",
+        "CD = (({left} + {right}) / 2, ({top} + {bottom}) / 2) = ({cd})",
+        "Area = {width} · {height} = {area}",
+        &format!("Diag = atan({{height}} / {{width}}) and 180° − it = {diagonals}"),
+        "Ratio = {width} / {height} = {side_ratio}",
+        "Fill = {na} / {area} = {filling}",
+    ];
+    block(&canvas.lines(), &ring.says(&worked.join("\n        ")))
 }
 
 /// Draws an imprint that is not symmetric with its two centres.
-fn centres() -> (Example, Vec<String>) {
+fn centres() -> String {
     let corner = "......../.##...../.##...../.##...../.######./........";
     let corner = Example::new(&common::grid(corner));
     let mut canvas = corner.boxed();
     let (cg, cd) = (corner.described.cg(), corner.described.cd());
     canvas.at(cg.x, cg.y, 'G');
     canvas.at(cd.x, cd.y, 'D');
-    (corner, canvas.lines())
+    assert_eq!(Example::fig_1().value("cg_cd_direction"), "–");
+    let drawn = "From CG ({cg}) to CD ({cd}): CG-CD = {cg_cd}, dir = {cg_cd_direction}\n";
+    let ring = Example::fig_1().says("Fig. 1: CG-CD = {cg_cd}, no direction");
+    block(&canvas.lines(), &(corner.says(drawn) + &ring))
 }
 
-/// The table at the top of the glossary links to a section for each key; each section has its block.
+/// The table at the top of the glossary links to a section for each key; each section has its drawing.
 #[test]
 fn every_descriptor_has_a_section_with_a_drawing() {
     let text = document("docs/glossary.md");
     for row in DESCRIPTORS {
-        let (key, name) = (row.key, row.name);
-        let heading = text.find(&format!("<a id=\"{key}\"></a>"));
-        let drawing = text.find(&format!("<!-- {key} -->"));
-        let is_there = heading.is_some() && heading < drawing;
-        assert!(is_there, "no section for {key} ({name})");
+        let anchor = format!("id=\"{}\"></a>", row.key);
+        let mut sections = text.split("\n<a ");
+        let section = sections.find(|section| section.contains(&anchor));
+        let is_drawn = section.is_some_and(|section| section.contains("```text"));
+        assert!(is_drawn, "no section for {} ({})", row.key, row.name);
     }
-    let keys = DESCRIPTORS.iter().map(|row| row.key);
-    assert!(keys.eq(BLOCKS.iter().map(|(key, _)| *key)));
 }

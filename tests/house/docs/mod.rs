@@ -28,13 +28,7 @@ const BLOCKS: &[Block] = &[
     ("prompt", tables::prompt),
     ("descriptors", tables::descriptors),
     ("parameters", tables::parameters),
-    ("positions", positions),
 ];
-
-/// The paper's experiment with positions.
-fn positions() -> String {
-    format!("\n{}\n", crate::examples::positions::report())
-}
 
 /// The folder of `Cargo.toml`.
 fn root() -> &'static Path {
@@ -190,7 +184,7 @@ fn every_picture_is_drawn_by_the_program() {
 fn the_readme_is_short_and_starts_with_two_commands() {
     let readme = document("README.md");
     let lines = readme.lines().count();
-    assert!(lines <= 250, "README.md has {lines} lines");
+    assert!(lines <= 180, "README.md has {lines} lines");
     let (run, test) = (
         readme.find("cargo run --release"),
         readme.find("cargo test"),
