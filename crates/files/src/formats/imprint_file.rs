@@ -76,7 +76,7 @@ const READERS: [(Begins, Reader); 4] = [
     (pbm::begins, pbm::read),
     (table::begins, table::read),
     (
-        |bytes| bytes.starts_with(b"\x93"),
+        |bytes| bytes.starts_with(numpy::MAGIC),
         |bytes| numpy::imprint::read(bytes).map_err(|error| error.of_key("NPY")),
     ),
 ];

@@ -37,4 +37,4 @@ pub use models::{
     FoundModel, ModelCache, ModelChoice, ModelFolder, Models, load_model, load_whole_model,
     model_hash, save_model,
 };
-pub use sweep_file::{PoseFile, atlas_path, is_poses, load_atlas, write_atlas};
+pub use sweep_file::{PoseFile, atlas_path, load_atlas, write_atlas};

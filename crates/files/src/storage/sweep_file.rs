@@ -66,12 +66,6 @@ pub fn load_atlas(path: &Path) -> Result<SweepResult, ReadError> {
     atlas::read(BufReader::new(file)).map_err(|error| wrong(path, error))
 }
 
-/// Whether a file of that name can hold the atlas number of every pose: it ends in `.npy`, in upper or lower
-/// case.
-pub fn is_poses(name: impl AsRef<Path>) -> bool {
-    has_ending(name, "npy")
-}
-
 /// A file with the atlas number of every pose: `uint32` in an array shaped angles × y0 × x0, preceded by the zooms
 /// (y, then x) if there are several.
 ///

@@ -2,47 +2,40 @@
 //!
 //! An array of `bool` is written. Arrays of two axes and any real numbers are read if their values are 0, 1 and 255.
 
+use std::io::Cursor;
+use std::ops::ControlFlow;
+
 use taxel_core::imprint::Imprint;
-use taxel_core::parameter::number::counted;
-use taxel_core::quote::shortened;
 use taxel_core::sensor::MatrixSize;
 
 use crate::error::ReadError;
 use crate::formats::imprint_file::is_active;
-use crate::formats::numpy::{self, Header, Number};
+use crate::formats::numpy::{self, Number};
+use crate::formats::recording::{self, ReadOptions, RecordingEvent};
 
-pub(in crate::formats) fn read(mut bytes: &[u8]) -> Result<Imprint, ReadError> {
-    let header = Header::read(&mut bytes)?;
-    let number = header.number().ok_or_else(|| {
-        let found = match header.code() {
-            "" => "records".to_owned(),
-            code => shortened(code),
-        };
-        ReadError::new(format!(
-            "type {found:?}, expected bool, whole numbers or floats"
-        ))
+/// Reads an array as a recording of a single frame.
+pub(in crate::formats) fn read(bytes: &[u8]) -> Result<Imprint, ReadError> {
+    let (mut found, mut more) = (None, false);
+    let options = ReadOptions::default();
+    recording::read(Cursor::new(bytes), &options, &mut |event| {
+        if let RecordingEvent::Frame(frame) = event {
+            more = found.replace(frame.clone()).is_some();
+        }
+        if more {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
     })?;
-    let size = match header.shape[..] {
-        [rows, columns] => MatrixSize::of_sides(columns, rows),
-        _ => None,
-    };
-    let size = size.ok_or_else(|| {
-        let shape = header.shape_in_words();
-        ReadError::new(format!(
-            "shape {shape}, expected rows and columns, 1 to 64 each"
-        ))
+    let frame = found.filter(|_| !more);
+    let frame = frame.ok_or_else(|| ReadError::new("several frames, expected an imprint"))?;
+    let size = MatrixSize::of_sides(frame.columns(), frame.rows()).ok_or_else(|| {
+        let found = frame.size().in_words();
+        ReadError::new(format!("{found}, expected 1 to 64 of each"))
     })?;
-    let expected = size.cells() * number.size();
-    if bytes.len() != expected {
-        let found = counted(bytes.len() as u64, "byte");
-        return Err(ReadError::new(format!(
-            "found {found} of numbers, expected {expected}"
-        )));
-    }
     let mut imprint = Imprint::empty(size);
     let places =
         (0..size.rows()).flat_map(|row| (0..size.columns()).map(move |column| (row, column)));
-    for ((row, column), value) in places.zip(number.values(&header.in_order_of_c(bytes))) {
+    for ((row, column), &value) in places.zip(frame.values()) {
         let active = is_active(value).ok_or_else(|| {
             let place = format!("row {}, column {}", row + 1, column + 1);
             ReadError::new(format!("{place}: found {value}, expected 0, 1 or 255"))
@@ -142,30 +135,17 @@ mod tests {
         };
         let small =
             |code: &str, shape: &str, numbers: &[u8]| file(1, &header(code, false, shape), numbers);
-        let version = "not a numpy array: expected a header of version 1 to 3";
-        wrong(b"", version);
-        wrong(&file(4, "{}", b""), version);
-        for code in ["<U1", "<f16"] {
-            let expected = format!("type {code:?}, expected bool, whole numbers or floats");
-            wrong(&small(code, "(1, 1)", b"1"), &expected);
-        }
-        for shape in ["(3)", "(65, 1)", "(18446744073709551615, 1)"] {
-            let expected = format!("shape {shape}, expected rows and columns, 1 to 64 each");
-            wrong(&small("|b1", &shape.replace("(3)", "(3,)"), b""), &expected);
-        }
-        let short = "found 1 byte of numbers, expected 2";
-        wrong(&small("|b1", "(1, 2)", b"\x01"), short);
-        for (number, value) in [
-            (&b"\x07\0"[..], "7"),
-            // Infinity and NaN in halves.
-            (b"\0\x7c", "inf"),
-            (b"\0\x7e", "NaN"),
-        ] {
-            let code = if value == "7" { "<u2" } else { "<f2" };
-            wrong(
-                &small(code, "(1, 1)", number),
-                &format!("row 1, column 1: found {value}, expected 0, 1 or 255"),
-            );
+        wrong(
+            &small("|b1", "(65, 1)", &[0; 65]),
+            "65 rows of 1, expected 1 to 64 of each",
+        );
+        wrong(
+            &small("|b1", "(2, 1, 1)", &[0; 2]),
+            "several frames, expected an imprint",
+        );
+        for (number, value) in [(&b"\x00\x47"[..], "7"), (b"\0\x7e", "NaN")] {
+            let said = format!("row 1, column 1: found {value}, expected 0, 1 or 255");
+            wrong(&small("<f2", "(1, 1)", number), &said);
         }
     }
 }

@@ -13,28 +13,27 @@ use taxel_core::frame::{Frame, FrameSize};
 use taxel_core::parameter::number::counted;
 
 use crate::error::{ReadError, ReadErrorKind};
-use crate::formats::recording::error::unshaped;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingNote, Sink, Stop};
-use crate::formats::recording::format::LOOKED_AT;
 
 /// The bytes before each frame of a `FlexiTac`.
 const MARKER: [u8; 2] = [0xaa, 0x55];
 
-/// Whether bytes begin like those of a `FlexiTac`, or three markers in succession have the same distance.
+/// Whether bytes begin like those of a `FlexiTac`, or three markers in succession are a frame apart.
 pub(super) fn is_flexitac(head: &[u8], options: &ReadOptions, _: bool) -> bool {
-    if head.starts_with(&MARKER) && !options.is_joined {
-        return true;
-    }
     let has_marker = |at: usize| head[at..].starts_with(&MARKER);
-    if let Some(size) = options.size {
+    let is_apart = |size: FrameSize| {
         let period = MARKER.len() + size.cells();
         let last = head.len().saturating_sub(2 * period);
-        return (0..last).any(|at| (0..3).all(|frame| has_marker(at + frame * period)));
-    }
-    let markers: Vec<usize> = (0..head.len()).filter(|&at| has_marker(at)).collect();
-    let is_even = |three: &[usize]| three[1] - three[0] == three[2] - three[1];
-    let mut three = markers.windows(3);
-    three.any(|three| is_even(three) && three[1] - three[0] > 2)
+        (0..last).any(|at| (0..3).all(|frame| has_marker(at + frame * period)))
+    };
+    has_marker(0) && !options.is_joined || options.size.is_some_and(is_apart)
+}
+
+/// The size of a frame, which bytes do not state.
+fn size(options: &ReadOptions) -> Result<FrameSize, ReadError> {
+    let message = "the rows and columns of a frame of bytes are not stated";
+    let unsized_bytes = || ReadError::new(message).of_kind(ReadErrorKind::Unsized);
+    options.size.ok_or_else(unsized_bytes)
 }
 
 /// Whether these are frames of a `MatSense`; text has brackets, too.
@@ -48,20 +47,7 @@ pub(super) fn is_matsense(head: &[u8], options: &ReadOptions, is_all: bool) -> b
 /// Reads the frames of a `FlexiTac`.
 pub(super) fn flexitac(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), Stop> {
     let options = sink.options;
-    let Some(size) = options.size else {
-        let (mut head, mut ended) = (Vec::new(), false);
-        let values = loop {
-            let mut markers = (0..head.len()).filter(|&at| head[at..].starts_with(&MARKER));
-            let first = markers.next().unwrap_or(0);
-            match markers.find(|&at| at > first + MARKER.len()) {
-                None if !ended && head.len() < LOOKED_AT => {
-                    ended = take_bytes(input, LOOKED_AT - head.len(), &mut head)?;
-                }
-                next => break next.unwrap_or(head.len()) - first,
-            }
-        };
-        return Err(unshaped(values.saturating_sub(MARKER.len()) as u64, None).into());
-    };
+    let size = size(options)?;
     let mut frames = MarkedFrames {
         board: Board::new(size, sink)?,
         bytes: Vec::new(),
@@ -305,12 +291,7 @@ fn framing(head: &[u8], cells: usize, options: &ReadOptions, is_all: bool) -> Op
 /// Reads the frames of a `MatSense`, in the framing that its first bytes show.
 pub(super) fn matsense(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), Stop> {
     let options = sink.options;
-    let Some(size) = options.size else {
-        let message = "the rows and columns of a frame of bytes are not stated";
-        return Err(ReadError::new(message)
-            .of_kind(ReadErrorKind::Unsized)
-            .into());
-    };
+    let size = size(options)?;
     let cells = size.cells();
     let (mut bytes, mut ended) = (Vec::new(), false);
     // As many bytes as 64 frames have show it, or nothing does.

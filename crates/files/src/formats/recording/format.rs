@@ -127,11 +127,6 @@ pub static FORMATS: [Format; 10] = [
 ];
 
 impl Format {
-    /// Whether a content begins like this.
-    pub(super) fn is_begun_in(&self, head: &[u8], options: &ReadOptions, is_all: bool) -> bool {
-        (self.sniff)(head, options, is_all)
-    }
-
     /// The formats of streams, with their names.
     pub fn of_streams() -> impl Iterator<Item = (&'static str, &'static Self)> {
         FORMATS
@@ -159,7 +154,7 @@ pub(super) fn format_of_head(
     let mut formats = FORMATS
         .iter()
         .filter(|format| !options.is_joined || format.stream.is_some());
-    formats.find(|format| format.is_begun_in(head, options, is_all))
+    formats.find(|format| (format.sniff)(head, options, is_all))
 }
 
 /// Returns true if bytes that are neither an imprint nor a shape look like a recording, for the message about them.

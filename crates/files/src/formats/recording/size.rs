@@ -72,10 +72,6 @@ const DECIMALS: i32 = 9;
 /// if no unit has this name, if no sensor can have such a pitch, or if nothing is left after rounding.
 pub(super) fn pitch_in_mm(length: f64, unit: &str) -> Option<f64> {
     let mm = match unit.to_lowercase().trim_end_matches('.') {
-        // The micro sign and the Greek letter look the same.
-        "um" | "\u{b5}m" | "\u{3bc}m" | "micrometers" | "micrometres" | "microns" => {
-            length / 1000.0
-        }
         "mm" | "millimeters" | "millimetres" => length,
         "cm" | "centimeters" | "centimetres" => length * 10.0,
         "m" | "meters" | "metres" => length * 1000.0,
@@ -104,7 +100,6 @@ mod tests {
         for (length, unit, expected) in [
             (0.57, "cm", Some(5.7)),
             (0.05, "Inch", Some(1.27)),
-            (1270.0, "µm", Some(1.27)),
             (1.27e-3, "m", Some(1.27)),
             (1.0, "m", Some(1000.0)),
             (1e-9, "mm", Some(1e-9)),

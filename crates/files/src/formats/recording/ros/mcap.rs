@@ -31,7 +31,7 @@ use crate::error::ReadError;
 use crate::formats::job::too_large;
 use crate::formats::numpy::Number;
 use crate::formats::recording::event::{ChannelInfo, LONGEST_NAME, Sink, Stop};
-use crate::formats::recording::ros::records::{CHANNEL, LARGE_MESSAGE, SCHEMA, each_record};
+use crate::formats::recording::ros::records::{CHANNEL, SCHEMA, each_record};
 use crate::formats::recording::size::{arranged, changed, frame_size, matrix_size};
 use crate::formats::recording::time;
 
@@ -120,14 +120,6 @@ impl McapState<'_, '_> {
                     self.topics.insert(id, (topic.into(), kind));
                 }
             }
-            LARGE_MESSAGE => match self.topics.get(&id) {
-                // An image of that size is not a frame.
-                None | Some((_, MessageKind::Image)) => {}
-                Some((topic, _)) => {
-                    let message = format!("{topic}: a message of more than 16 MiB");
-                    return Err(ReadError::new(message).into());
-                }
-            },
             _ => {
                 let (head, data) = rest.split_first_chunk::<20>().ok_or_else(broken)?;
                 if let Some((topic, kind)) = self.topics.get(&id).cloned() {

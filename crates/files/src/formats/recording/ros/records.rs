@@ -32,9 +32,7 @@ pub(super) const SCHEMA: u8 = 3;
 /// A topic: its number, the number of its schema, its name and its encoding.
 pub(super) const CHANNEL: u8 = 4;
 /// A message: the number of its channel, its sequence number, the times of logging and publishing, and its data.
-pub(super) const MESSAGE: u8 = 5;
-/// Stands for a message that is too large to be read: the number of its channel. No record has this kind.
-pub(super) const LARGE_MESSAGE: u8 = 0;
+const MESSAGE: u8 = 5;
 /// A chunk: a head, and records after it.
 const CHUNK: u8 = 6;
 /// The end of the messages, with the checksum of everything before it.
@@ -126,12 +124,8 @@ impl RecordReader<'_> {
                     input.read_exact(&mut stated)?;
                     check_sum(u32::from_le_bytes(stated), sum, "the file")?;
                 }
-                MESSAGE if length > LARGEST_RECORD => {
-                    let mut channel = [0; 2];
-                    input.read_exact(&mut channel)?;
-                    (self.each)(LARGE_MESSAGE, &channel)?;
-                    pass_over(input, length - 2)?;
-                }
+                // A message of that size is the image of a camera.
+                MESSAGE if length > LARGEST_RECORD => pass_over(input, length)?,
                 SCHEMA | CHANNEL | MESSAGE => self.record(input, kind, length)?,
                 _ => pass_over(input, length)?,
             }

@@ -41,11 +41,8 @@ enum Block {
     #[default]
     Other,
     Sensor(Option<String>),
-    /// A list of the cells of a part of a sensor, and how many are still to come once it has begun.
-    Group {
-        cells: usize,
-        left: usize,
-    },
+    /// A list of the cells of a part of a sensor.
+    Group,
 }
 
 /// The state of the reader: the keys of the current frame and sensor.
@@ -76,7 +73,7 @@ pub(crate) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), S
     let mut more = lines.advance_to_content()?;
     while more {
         let (key, value) = pair(lines.line());
-        match &mut state.block {
+        match state.block {
             Block::Sensor(_) if key == "SENSELS" => {
                 state.matrix(&mut lines, &mut frame)?;
                 // A row too many shows that `Rows` is wrong, so the frame is not reported before the line below it is
@@ -91,11 +88,6 @@ pub(crate) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), S
                 more = next?;
                 continue;
             }
-            Block::Group { cells, left } if key == "SENSELS" => *left = *cells,
-            Block::Group { left, .. } if is_value(&key) => {
-                let fields = Separator::Byte(b',').split(lines.line());
-                *left = left.saturating_sub(fields.filter(|field| !field.is_empty()).count());
-            }
             _ => state.line(&key, &value, lines.number)?,
         }
         more = lines.advance_to_content()?;
@@ -104,9 +96,6 @@ pub(crate) fn read(input: &mut dyn BufRead, sink: &mut Sink<'_>) -> Result<(), S
     let message = match state.block {
         // Only the cells end this block, so they are missing.
         Block::Sensor(_) => "ends inside a SENSOR block, expected SENSELS",
-        Block::Group { left: 1.., .. } => {
-            "ends inside a GROUP block, expected as many values as Cells says"
-        }
         _ if sensors < before => "ends inside a FRAME, expected SENSOR",
         _ => return Ok(()),
     };
@@ -154,13 +143,8 @@ impl XsensorState {
                 self.block = Block::Sensor(Some(value.to_owned()));
                 (self.sides, self.pitches) = ([None; 2], [None; 2]);
             }
-            "GROUP" => self.block = Block::Group { cells: 0, left: 0 },
-            "CELLS" => {
-                if let Block::Group { cells, .. } = &mut self.block {
-                    *cells = value.parse().unwrap_or(0);
-                }
-            }
-            "ROWS" | "COLUMNS" if !matches!(self.block, Block::Group { .. }) => {
+            "GROUP" => self.block = Block::Group,
+            "ROWS" | "COLUMNS" if self.block != Block::Group => {
                 // A single sensor may have no name.
                 if self.block == Block::Other {
                     self.block = Block::Sensor(None);
