@@ -1,12 +1,12 @@
-//! Two imprints side by side: where they differ, their descriptors, and the differences between these.
+//! Two imprints over each other: where they differ, their descriptors, and the differences between these.
 //!
 //! ```text
-//! 5 taxels differ   A: washer   B: the matrix        how many taxels differ | what is compared, the earlier one first
-//!    0   2   4   6       A   B   B-A
+//! 5 taxels differ   a: washer   b: the matrix        how many taxels differ | what is compared, the earlier one first
+//!    0   2   4   6       a   b   b-a
 //!  0 · · a █ b ·    NA   40  52  +12                 █ in both, a b in one only | descriptors of the main regions
 //! ```
-//! On a wide screen A and B stand beside the view of their differences; elsewhere Tab shows one after the other. If
-//! there is no room for the descriptors beside a view, they are a view of their own. Parts that do not fit scroll.
+//! If there is no room for the descriptors beside the imprints, Tab shows one or the other. Parts that do not fit
+//! scroll.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -20,20 +20,18 @@ use taxel_files::formats::value;
 use crate::tui::app::{App, Canvas, Endpoint, Flow, Message, Page, Place, Placed, Wheel, refuse};
 use crate::tui::grid::{CellSize, Grid, Look, RULER, Window, beside_rulers};
 use crate::tui::keys::{Arrow, Context};
-use crate::tui::widget::write::{self, around, narrow};
+use crate::tui::widget::write::{self, narrow};
 use crate::tui::widget::{Role, Theme, spelling};
 
 const GAP: u16 = 2;
-/// The views of imprints: the differences, A, B.
-const GRIDS: usize = 3;
 const LONGEST: usize = 24;
 
 pub(crate) struct Comparison {
     imprints: Box<[Imprint; 2]>,
     names: [String; 2],
     table: Vec<[String; 4]>,
-    /// A view of imprints, or the descriptors.
-    view: usize,
+    /// Whether the descriptors are shown, not the imprints, where there is no room for both.
+    shows_table: bool,
     /// The columns and rows that are scrolled over.
     scrolled: (u16, u16),
 }
@@ -47,12 +45,12 @@ impl Comparison {
             table: table(&imprints),
             imprints: Box::new(imprints),
             names: [first.0, second.0],
-            view: 0,
+            shows_table: false,
             scrolled: (0, 0),
         }
     }
 
-    /// The width of a view whose taxels have this many characters.
+    /// The width of the imprints with this many characters a taxel.
     fn width(&self, characters: u16) -> u16 {
         RULER + characters * u16::from(self.imprints[0].columns()) + 1
     }
@@ -67,37 +65,27 @@ impl Comparison {
         std::array::from_fn(|column| widest(column).unwrap_or(0))
     }
 
-    /// Whether the values of the descriptors have room beside a view.
-    fn has_table_beside(&self, width: u16) -> bool {
-        let values: u16 = self.widths()[..GRIDS].iter().sum();
+    /// Whether the values of the descriptors have room beside the imprints.
+    fn has_both(&self, width: u16) -> bool {
+        let values: u16 = self.widths()[..3].iter().sum();
         self.width(1) + values <= width + GAP
     }
 
-    fn panes(&self, area: Rect) -> (Vec<(usize, Rect)>, Option<Rect>) {
+    fn panes(&self, area: Rect) -> (Option<Rect>, Option<Rect>) {
         let body = write::below(area, 1);
+        if !self.has_both(body.width) {
+            let imprints = Some(body).filter(|_| !self.shows_table);
+            return (imprints, Some(body).filter(|_| self.shows_table));
+        }
         let table = self.widths().iter().sum::<u16>() - GAP;
-        let beside = self.has_table_beside(body.width);
-        if self.view >= GRIDS && !beside {
-            return (Vec::new(), Some(body));
-        }
-        let view = self.view.min(GRIDS - 1);
-        let all = 3 * self.width(2) + table <= body.width;
-        let shown = if all { 0..GRIDS } else { view..view + 1 };
-        let room = body.width.saturating_sub(if beside { table } else { 0 });
-        let width = self.width(2).min(room.max(self.width(1)));
-        let mut rest = body;
-        let mut views = Vec::new();
-        for view in shown {
-            let place = write::left_of(rest, rest.x + width);
-            rest = write::right_of(rest, place.right());
-            views.push((view, place));
-        }
-        (views, beside.then_some(rest))
+        let room = body.width.saturating_sub(table);
+        let end = body.x + self.width(2).min(room.max(self.width(1)));
+        let (imprints, table) = (write::left_of(body, end), write::right_of(body, end));
+        (Some(imprints), Some(table))
     }
 
-    /// A title stands above the numbers of columns.
     fn grid(&self, area: Rect) -> Grid {
-        let inner = beside_rulers(write::below(area, 1));
+        let inner = beside_rulers(area);
         let (left, top) = self.scrolled;
         let (columns, rows) = (self.imprints[0].columns(), self.imprints[0].rows());
         let size = if 2 * u16::from(columns) <= inner.width {
@@ -117,38 +105,34 @@ impl Comparison {
     /// The columns and rows that can be scrolled over.
     fn hidden(&self, area: Rect) -> (u16, u16) {
         let [first, _] = &*self.imprints;
-        let (views, table) = self.panes(area);
-        let views = views.into_iter().map(|(_, place)| {
+        let (imprints, table) = self.panes(area);
+        let (columns, rows) = imprints.map_or((0, 0), |place| {
             let grid = self.grid(place);
-            let columns = first.columns() - grid.columns.count;
-            (columns.into(), (first.rows() - grid.rows.count).into())
+            (
+                first.columns() - grid.columns.count,
+                first.rows() - grid.rows.count,
+            )
         });
-        let table = table.map(|area| (0, narrow(self.table.len()).saturating_sub(area.height)));
-        let all = views.chain(table);
-        all.fold((0, 0), |most, one| (most.0.max(one.0), most.1.max(one.1)))
+        let lines = table.map_or(0, |area| {
+            narrow(self.table.len()).saturating_sub(area.height)
+        });
+        (columns.into(), lines.max(rows.into()))
     }
 
-    fn draw_view(&self, view: usize, theme: &Theme, buffer: &mut Buffer, area: Rect) {
+    fn draw_imprints(&self, theme: &Theme, buffer: &mut Buffer, area: Rect) {
         let [first, second] = &*self.imprints;
-        let title = ["a: only A, b: only B", "A", "B"][view];
-        write::text(buffer, area, theme, title, Role::Title);
         let grid = self.grid(area);
         grid.draw_rulers(theme, buffer);
         grid.draw(buffer, |column, row| {
-            let (one, other) = (first.get(column, row), second.get(column, row));
-            let on = if view == 2 { other } else { one };
-            let state = if on { Role::Chosen } else { Role::Inactive };
             // A letter instead of the shade shows which of the two has it active.
-            let (signs, role) = match (view, one, other) {
-                (0, true, false) => (['a', 'a'], Role::Key),
-                (0, false, true) => (['b', 'b'], Role::Key),
-                _ => (theme.taxel(state), state),
+            let (signs, role) = match (first.get(column, row), second.get(column, row)) {
+                (true, false) => (['a', 'a'], Role::Key),
+                (false, true) => (['b', 'b'], Role::Key),
+                (true, true) => (theme.taxel(Role::Chosen), Role::Chosen),
+                (false, false) => (theme.taxel(Role::Inactive), Role::Inactive),
             };
-            Look {
-                signs,
-                fill: ' ',
-                style: theme.style(role),
-            }
+            let (fill, style) = (' ', theme.style(role));
+            Look { signs, fill, style }
         });
     }
 
@@ -179,7 +163,7 @@ fn table(imprints: &[Imprint; 2]) -> Vec<[String; 4]> {
         let main = main_region(&regions).and_then(|main| regions.get(main));
         main.map(Description::of)
     });
-    let heading = ["", "A", "B", "B-A"].map(str::to_owned);
+    let heading = ["", "a", "b", "b-a"].map(str::to_owned);
     let rows = DESCRIPTORS.iter().map(|descriptor| {
         let values = described.each_ref().map(|described| {
             let described = described.as_ref();
@@ -238,9 +222,8 @@ impl Page for Comparison {
             return Flow::Stay;
         };
         let by = match *message {
-            Message::Field(by) => {
-                let views = GRIDS + usize::from(!self.has_table_beside(area.width));
-                self.view = around(self.view.min(views - 1), by, views);
+            Message::Field(_) => {
+                self.shows_table ^= true;
                 return Flow::Stay;
             }
             Message::Scroll(lines) => (0, lines),
@@ -269,15 +252,15 @@ impl Page for Comparison {
         let differ = differing(self.imprints[0].differing(&self.imprints[1]).count());
         let pieces = [
             (&*differ, Role::Title),
-            ("   A: ", Role::Key),
+            ("   a: ", Role::Key),
             (&self.names[0], Role::Text),
-            ("   B: ", Role::Key),
+            ("   b: ", Role::Key),
             (&self.names[1], Role::Text),
         ];
         write::line(buffer, area, theme, pieces);
-        let (views, table) = self.panes(area);
-        for (view, place) in views {
-            self.draw_view(view, theme, buffer, place);
+        let (imprints, table) = self.panes(area);
+        if let Some(place) = imprints {
+            self.draw_imprints(theme, buffer, place);
         }
         if let Some(place) = table {
             self.draw_table(theme, buffer, place);
@@ -290,11 +273,13 @@ impl Page for Comparison {
     }
 
     fn has_use_for(&self, message: &Message, area: Rect) -> bool {
-        let scrolls = matches!(
-            message,
-            Message::Scroll(_) | Message::ScrollTo(_) | Message::Choose(_)
-        );
-        !scrolls || self.hidden(area) != (0, 0)
+        match message {
+            Message::Field(_) => !self.has_both(area.width),
+            Message::Scroll(_) | Message::ScrollTo(_) | Message::Choose(_) => {
+                self.hidden(area) != (0, 0)
+            }
+            _ => true,
+        }
     }
 }
 

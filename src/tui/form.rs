@@ -20,7 +20,7 @@ use taxel_core::figure::{Figure, FigureKind, NO_ROOM};
 use taxel_core::parameter::{Parameter, ParameterError};
 use taxel_core::picture::PICTURE_PARAMETERS;
 use taxel_core::quote::quoted_character;
-use taxel_core::sensor::{MatrixSize, SENSOR_PARAMETERS, Sensor};
+use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor};
 use taxel_core::source::Source;
 use taxel_files::formats::value::counted;
 
@@ -29,7 +29,6 @@ use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Canvas, Flow, Page, Place, Placed, Wheel};
 use crate::tui::app::state::App;
-use crate::tui::explore::ranges::RangesMemory;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Context;
 use crate::tui::widget::field_list::{Field, FieldList, FieldRows, draw_choice};
@@ -40,21 +39,6 @@ use crate::tui::widget::write::{self, around};
 const LABEL: usize = 10;
 const INPUT: usize = 9;
 const LONGEST: usize = 24;
-
-/// What forms begin with: the values accepted last.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct FormMemory {
-    figures: Vec<(Figure, MatrixSize)>,
-    pub(crate) ranges: Option<RangesMemory>,
-}
-
-impl FormMemory {
-    fn new_figure(&self, kind: FigureKind, sensor: &Sensor) -> Figure {
-        let known =
-            (self.figures.iter()).find(|(own, size)| own.kind() == kind && *size == sensor.size());
-        known.map_or_else(|| Figure::default_of(kind, sensor), |(figure, _)| *figure)
-    }
-}
 
 enum Subject {
     Figure(FigureKind),
@@ -67,7 +51,6 @@ pub(crate) struct FormDialog {
     form: FieldList,
     /// The texts that were typed, also for other kinds of figures.
     typed: BTreeMap<Parameter, String>,
-    memory: FormMemory,
     /// What the fields had at first.
     begun: Document,
     before: Document,
@@ -78,38 +61,24 @@ pub(crate) struct FormDialog {
 }
 
 impl FormDialog {
-    pub(crate) fn figure(before: &Document, memory: &FormMemory) -> Self {
-        let figure = if let Some(Source::Figure(figure)) = before.source {
-            figure
-        } else {
-            let last = memory.figures.last();
-            let kind = last.map_or(FigureKind::Ellipse, |(figure, _)| figure.kind());
-            memory.new_figure(kind, &before.sensor)
+    pub(crate) fn figure(before: &Document) -> Self {
+        let figure = match before.source {
+            Some(Source::Figure(figure)) => figure,
+            _ => Figure::default_of(FigureKind::Ellipse, &before.sensor),
         };
         let begun = Document::touched(before.sensor, Source::Figure(figure));
-        Self::new(
-            Subject::Figure(figure.kind()),
-            before,
-            begun,
-            memory.clone(),
-        )
+        Self::new(Subject::Figure(figure.kind()), before, begun)
     }
 
     pub(crate) fn picture(before: &Document, placed: Document, name: String) -> Self {
-        let subject = Subject::Picture(name);
-        Self::new(subject, before, placed, FormMemory::default())
+        Self::new(Subject::Picture(name), before, placed)
     }
 
     pub(crate) fn sensor(before: &Document) -> Self {
-        Self::new(
-            Subject::Sensor,
-            before,
-            before.clone(),
-            FormMemory::default(),
-        )
+        Self::new(Subject::Sensor, before, before.clone())
     }
 
-    fn new(subject: Subject, before: &Document, begun: Document, memory: FormMemory) -> Self {
+    fn new(subject: Subject, before: &Document, begun: Document) -> Self {
         let has_choice = matches!(subject, Subject::Figure(_));
         let mut dialog = Self {
             form: FieldList {
@@ -121,7 +90,6 @@ impl FormDialog {
             },
             subject,
             typed: BTreeMap::new(),
-            memory,
             before: before.clone(),
             shown: begun.clone(),
             settled: begun.clone(),
@@ -139,8 +107,8 @@ impl FormDialog {
         }
     }
 
-    /// Makes the fields of the subject. A figure of another kind is another figure: it has what was typed, accepted last
-    /// for this kind, or by default, not what the one on the matrix has.
+    /// Makes the fields of the subject. A figure of another kind is another figure: it has what was typed, or the
+    /// defaults, not what the one on the matrix has.
     fn fill(&mut self) {
         for field in self.form.fields.iter().filter(|field| !field.is_proposed()) {
             self.typed.insert(field.parameter, field.text().to_owned());
@@ -149,7 +117,7 @@ impl FormDialog {
         let (parameters, source): (&[Parameter], _) = match &self.subject {
             Subject::Figure(kind) => {
                 let own = source.filter(|source| source.kind() == Some(*kind));
-                let new = || Source::Figure(self.memory.new_figure(*kind, &self.before.sensor));
+                let new = || Source::Figure(Figure::default_of(*kind, &self.before.sensor));
                 (kind.parameters(), Some(own.unwrap_or_else(new)))
             }
             Subject::Picture(_) => (PICTURE_PARAMETERS, source),
@@ -184,7 +152,6 @@ impl FormDialog {
             },
             Subject::Sensor => self.before.on(Sensor::default()),
         };
-        self.memory = FormMemory::default();
         self.form.fields.clear();
         self.typed.clear();
         self.fill();
@@ -254,11 +221,6 @@ impl Page for FormDialog {
         match message {
             Message::Accept => match self.form.error() {
                 None => {
-                    if let Some(Source::Figure(figure)) = self.shown.source {
-                        let figures = &mut app.forms.figures;
-                        figures.retain(|(other, _)| other.kind() != figure.kind());
-                        figures.push((figure, self.shown.sensor.size()));
-                    }
                     replace(app, self.shown.clone());
                     return Flow::Close;
                 }
@@ -342,7 +304,6 @@ impl Page for FormDialog {
 fn kind_after(now: FigureKind, message: &Message) -> Option<Result<FigureKind, String>> {
     let all = FigureKind::ALL;
     let at = all.iter().position(|&own| own == now)?;
-    let names = || FigureKind::names().join(", ");
     let begins_number = |first: char| "+-.0123456789".contains(first);
     Some(match message {
         // A click on the kind, if it already has the focus, chooses the next kind.
@@ -353,13 +314,9 @@ fn kind_after(now: FigureKind, message: &Message) -> Option<Result<FigureKind, S
             let own = letter.to_ascii_lowercase();
             let kind = following.find(|kind| kind.name().starts_with(own));
             let letter = quoted_character(*letter);
+            let names = || FigureKind::names().join(", ");
             let none = || format!("no kind begins with {letter}; kinds: {}", names());
             kind.copied().ok_or_else(none)
-        }
-        Message::Paste(text) if !text.trim().starts_with(begins_number) => {
-            let name = text.trim().to_lowercase();
-            let kind = all.iter().copied().find(|kind| kind.name() == name);
-            kind.ok_or_else(|| format!("no kind named {text:?}; kinds: {}", names()))
         }
         message if is_edit(message) => Err("an arrow or a letter chooses the kind".to_owned()),
         _ => return None,

@@ -38,8 +38,6 @@ fn taxels_are_toggled_and_toggles_are_undone() {
         ("<Space><Right><Space>uuUU", "NA 2 in all"),
         ("<Space><Right><Space>uu<C-r>", "NA 1 in all"),
         ("<Space>u<Right><Space>U", "nothing to redo"),
-        ("v<Right><Left>u", "NA 0 in all"),
-        ("vf<Enter><Right>", "NA 52 in all"),
     ]);
 }
 
@@ -131,12 +129,8 @@ fn pasted_text_only_goes_into_fields() {
     let mut form = session("f<Tab>");
     form.send(Message::Paste(" 2.5\n".to_owned()));
     shows(&form, &["rx 2.50"]);
-    // Also on the row of kinds: a name, or a number for the first field.
-    let mut form = session("f");
-    form.send(Message::Paste("Hexagon\n".to_owned()));
-    shows(&form, &["< hexagon   >"]);
-    form.send(Message::Paste("nut".to_owned()));
-    shows(&form, &["no kind named \"nut\"; kinds: ellipse, rectangle"]);
+    // On the row of kinds, for the first field.
+    let mut form = session("fh");
     form.send(Message::Paste("2.5".to_owned()));
     shows(&form, &["side 2.50"]);
     for page in [

@@ -229,7 +229,6 @@ fn help_is_available_everywhere() {
         (":<F1>", "Enter run", "In the command line"),
         ("<Space>q?", "y: lose it", "At a question"),
         ("f<Enter>g?", "held, step", "While a shape is held"),
-        ("v?", "drawing", "While drawing"),
         ("<F1>", "? Help", "On the matrix"),
     ] {
         let mut session = session(keys);

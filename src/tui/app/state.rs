@@ -16,7 +16,7 @@ use crate::tui::app::{
     Document, History, Message, Page, Place, Reading, StoredName, find, find_mut,
 };
 use crate::tui::explore::results::Results;
-use crate::tui::form::{FormDialog, FormMemory};
+use crate::tui::form::FormDialog;
 use crate::tui::grid::Grid;
 use crate::tui::jobs::Jobs;
 use crate::tui::keys::action::{self, Action};
@@ -129,12 +129,9 @@ pub struct App {
     pub(in crate::tui) works: u64,
     /// The commands given so far, the last one last.
     pub(in crate::tui) commands: Vec<String>,
-    pub(in crate::tui) forms: FormMemory,
     /// While the shape is held, so that the arrow keys move it and not the cursor: the document when it was taken.
     pub(in crate::tui) held: Option<Box<Document>>,
     pub(in crate::tui) moves: Option<MoveKind>,
-    /// While the cursor draws: the state of the taxels that it passes.
-    pub(in crate::tui) pen: Option<bool>,
     pub(in crate::tui) paint: Option<Paint>,
     pub(in crate::tui) screen: (u16, u16),
     pub theme: Theme,
@@ -169,10 +166,8 @@ impl App {
             live: None,
             works: 0,
             commands: Vec::new(),
-            forms: FormMemory::default(),
             held: None,
             moves: None,
-            pen: None,
             paint: None,
             screen: (80, 24),
             theme: options.theme,
@@ -203,7 +198,6 @@ impl App {
             (Some(page), true) if page.context() == Context::Recognise => Context::Hold,
             (Some(page), _) => page.context(),
             (None, true) => Context::Hold,
-            (None, false) if self.pen.is_some() => Context::Draw,
             (None, false) => Context::Matrix,
         }
     }

@@ -59,7 +59,6 @@ pub enum ExploreMessage {
     /// To the heading to the right.
     Columns(i8),
     Sort,
-    Find,
     Follow,
     /// A click on a place of a tab: a heading, x0 and y0 of a map.
     Point(u64, u64),

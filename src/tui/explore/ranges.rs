@@ -4,7 +4,7 @@
 //! Explore: hexagon
 //! x0      4:4.99:0.01      -16 to 16 cells             a field for each axis: a number or start:end:step
 //! Anchor  < corner > top left, before turning          which point of the shape these are about
-//! 3,600,000 poses, about 2 s                           or why there is no grid of these ranges
+//! 3,600,000 poses                                      or why there is no grid of these ranges
 //! ! the sensor cuts off 270 poses
 //! without 1 taxel set by hand
 //! ```
@@ -15,13 +15,13 @@ use ratatui::layout::{Position, Rect};
 use taxel_core::pose::{
     Anchor, Axis, DecimalRange, GivenRanges, PoseGrid, RangeError, Ranges, default_ranges,
 };
-use taxel_core::sensor::{MatrixSize, Sensor};
+use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
 use taxel_files::formats::value::{counted, time_in_words};
 
 use crate::tui::app::{App, Canvas, Flow, Message, Page, Place, Placed, Wheel, refuse};
 use crate::tui::explore::name_of;
-use crate::tui::explore::work::{measure, sweep};
+use crate::tui::explore::work::sweep;
 use crate::tui::keys::{Arrow, Context};
 use crate::tui::widget::write::{self, narrow};
 use crate::tui::widget::{Field, FieldList, FieldRows, FormError, Role, TextField, draw_choice};
@@ -33,24 +33,6 @@ const INPUT: usize = 16;
 /// With more angles and zooms, nothing is computed for each of them while typing.
 const MOST_ORIENTATIONS: u64 = 20_000;
 
-/// The ranges accepted last.
-#[derive(Clone, Debug)]
-pub(crate) struct RangesMemory {
-    of: &'static str,
-    size: MatrixSize,
-    anchor: Anchor,
-    ranges: GivenRanges,
-}
-
-impl RangesMemory {
-    /// The range of an axis. Places belong to the shape and the sensor.
-    fn get(&self, source: &Source, sensor: &Sensor, axis: Axis) -> Option<DecimalRange> {
-        let place = matches!(axis, Axis::X0 | Axis::Y0);
-        let suits = source.kind_name() == self.of && self.size == sensor.size();
-        self.ranges[axis].filter(|_| !place || suits)
-    }
-}
-
 pub(crate) struct RangesForm {
     source: Source,
     form: FieldList,
@@ -60,8 +42,6 @@ pub(crate) struct RangesForm {
     pub(super) grid: Result<PoseGrid, String>,
     /// The poses that the sensor cuts off, unless there are too many orientations to count.
     cut_off: Option<u64>,
-    /// The time that the sweep takes, once a job has measured it.
-    pub(super) time: Option<Duration>,
 }
 
 fn check(field: &Field, sensor: &Sensor) -> Result<(), FormError> {
@@ -79,19 +59,15 @@ fn check(field: &Field, sensor: &Sensor) -> Result<(), FormError> {
 }
 
 impl RangesForm {
-    /// The ranges are those of an earlier sweep if there is one, otherwise the last accepted ones if they fit, otherwise
-    /// the defaults.
+    /// The ranges are those of an earlier sweep if there is one, otherwise the defaults.
     pub(super) fn new(
         (source, sensor, by_hand): (Source, Sensor, u32),
         earlier: Option<&PoseGrid>,
-        last: Option<&RangesMemory>,
     ) -> Self {
-        let last = last.filter(|_| earlier.is_none());
         let ranges = earlier.map_or_else(Ranges::default, |grid| *grid.ranges());
         let fields = Axis::of(&source).map(|axis| {
-            let known = last.and_then(|last| last.get(&source, &sensor, axis));
-            let text = known.unwrap_or(ranges[axis]).to_string();
-            let is_own = earlier.is_some() || known.is_some() || axis == Axis::Angle;
+            let text = ranges[axis].to_string();
+            let is_own = earlier.is_some() || axis == Axis::Angle;
             Field {
                 parameter: axis.parameter(),
                 input: TextField::new(text.as_str(), LONGEST),
@@ -99,7 +75,6 @@ impl RangesForm {
                 initial: None,
             }
         });
-        let anchor = earlier.map(PoseGrid::anchor);
         let mut form = Self {
             form: FieldList {
                 fields: fields.collect(),
@@ -109,11 +84,10 @@ impl RangesForm {
                 check,
             },
             source,
-            anchor: anchor.or(last.map(|last| last.anchor)).unwrap_or_default(),
+            anchor: earlier.map(PoseGrid::anchor).unwrap_or_default(),
             by_hand,
             grid: Err(String::new()),
             cut_off: None,
-            time: None,
         };
         form.follow();
         form.form.set_focus(Some(0));
@@ -150,21 +124,18 @@ impl RangesForm {
         Some(())
     }
 
-    /// Makes the grid of the fields. Returns whether it is a new one.
-    fn follow(&mut self) -> bool {
+    /// Makes the grid of the fields.
+    fn follow(&mut self) {
         self.propose();
         let grid = self.made();
-        if grid == self.grid {
-            return false;
+        if grid != self.grid {
+            let known = grid
+                .as_ref()
+                .ok()
+                .filter(|grid| grid.rows() / grid.rows_per_orientation() <= MOST_ORIENTATIONS);
+            self.cut_off = known.map(PoseGrid::poses_beyond_sensor);
+            self.grid = grid;
         }
-        (self.grid, self.cut_off, self.time) = (grid, None, None);
-        let Ok(grid) = &self.grid else {
-            return false;
-        };
-        if grid.rows() / grid.rows_per_orientation() <= MOST_ORIENTATIONS {
-            self.cut_off = Some(grid.poses_beyond_sensor());
-        }
-        true
     }
 
     fn made(&self) -> Result<PoseGrid, String> {
@@ -193,9 +164,7 @@ impl RangesForm {
         let mut lines = Vec::new();
         match &self.grid {
             Ok(grid) => {
-                let time = self.time.map(|time| format!(", {}", about(time)));
-                let poses = counted(grid.poses(), "pose") + &time.unwrap_or_default();
-                lines.push((poses, Role::Text));
+                lines.push((counted(grid.poses(), "pose"), Role::Text));
                 if let Some(cut_off) = self.cut_off.filter(|&poses| poses > 0) {
                     let what = if cut_off == grid.poses() {
                         "every pose".to_owned()
@@ -224,12 +193,6 @@ impl Page for RangesForm {
         match message {
             Message::Accept => match self.grid.clone() {
                 Ok(grid) => {
-                    app.forms.ranges = self.given().map(|ranges| RangesMemory {
-                        of: self.source.kind_name(),
-                        size: self.form.sensor.size(),
-                        anchor: self.anchor,
-                        ranges,
-                    });
                     sweep(app, grid);
                     return Flow::Close;
                 }
@@ -243,9 +206,8 @@ impl Page for RangesForm {
             Message::Defaults => {
                 let of = (self.source.clone(), self.form.sensor, self.by_hand);
                 let focus = self.form.focus;
-                *self = Self::new(of, None, None);
+                *self = Self::new(of, None);
                 self.form.set_focus(focus);
-                measure(app, self);
             }
             Message::ToField(None)
             | Message::Type(' ')
@@ -262,9 +224,7 @@ impl Page for RangesForm {
             }
             message => self.form.take(message),
         }
-        if self.follow() {
-            measure(app, self);
-        }
+        self.follow();
         Flow::Stay
     }
 

@@ -202,34 +202,6 @@ impl Results {
         Ok(())
     }
 
-    /// Selects the imprint on the matrix, or the same imprint at another place: a shape moved by whole cells leaves an
-    /// imprint moved by as many taxels.
-    fn find(&mut self, app: &mut App) -> Result<(), String> {
-        let imprint = app.reading().imprint;
-        if let Some(id) = self.sweep().atlas.find(&imprint) {
-            self.list.find(id);
-            return Ok(());
-        }
-        let found = self.sweep().atlas.find_shifted(&imprint);
-        let found = found.ok_or("the imprint on the matrix is not among these")?;
-        self.list.find(found.id);
-        let ways = [
-            (found.right, "column", ["to the left", "to the right"]),
-            (found.down, "row", ["up", "down"]),
-        ];
-        let ways = ways.into_iter().filter(|(by, ..)| *by != 0);
-        let ways = ways.map(|(by, noun, towards)| {
-            let count = counted(by.unsigned_abs(), noun);
-            format!("{count} {}", towards[usize::from(by > 0)])
-        });
-        let ways = ways.collect::<Vec<_>>().join(" and ");
-        inform(
-            app,
-            format!("the same imprint; on the matrix it lies {ways}"),
-        );
-        Ok(())
-    }
-
     /// Puts the shape onto the matrix in the present pose, with just the imprint that the sweep found. The user may
     /// have another sensor by now: taxels that it reads differently are set by hand.
     fn put_onto_matrix(&self, app: &mut App) -> Result<(), String> {
@@ -277,7 +249,6 @@ impl Results {
                 self.choose(around(self.chosen.number, by, features().len()));
             }
             Message::Explore(ExploreMessage::Follow) => self.follow()?,
-            Message::Explore(ExploreMessage::Find) => self.find(app)?,
             _ => (self.tab().on)(self, app, message, tab_area(app, self)),
         }
         Ok(Flow::Stay)

@@ -5,14 +5,14 @@
 //! ```
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use ratatui::layout::{Position, Rect};
 use taxel_core::picture::Picture;
 use taxel_core::pose::PoseGrid;
 use taxel_core::quote::shortened;
 use taxel_core::source::Source;
-use taxel_core::sweep::{Sweep, SweepResult, TimingSample};
+use taxel_core::sweep::{Sweep, SweepResult};
 use taxel_files::formats::value::{counted, grouped};
 use taxel_files::memory::MemoryGuard;
 use taxel_files::storage::{Existing, atlas_path, write_atlas};
@@ -77,37 +77,10 @@ pub(super) fn open_ranges(app: &mut App, earlier: Option<&PoseGrid>) {
     let by_hand = document.source.as_ref();
     let by_hand = by_hand.map_or(0, |_| document.edits.count());
     let of = (source, document.sensor, by_hand);
-    let form = RangesForm::new(of, earlier, app.forms.ranges.as_ref());
-    measure(app, &form);
-    app.open(form);
-}
-
-/// Estimates the time of a sweep: the best of several short ones. A script would not show the same twice.
-pub(super) fn measure(app: &mut App, form: &RangesForm) {
-    let Some(grid) = form.grid.clone().ok().filter(|_| app.jobs.has_threads()) else {
-        return;
-    };
-    app.jobs.run(jobs::Slot::Measure, move |progress| {
-        let sample = TimingSample::of(&grid);
-        let (begun, mut best) = (Instant::now(), f64::INFINITY);
-        while begun.elapsed() < Duration::from_millis(30) && !progress.is_stopped() {
-            let start = Instant::now();
-            Sweep::new(&sample.grid).run();
-            best = best.min(start.elapsed().as_secs_f64());
-        }
-        let time = Duration::try_from_secs_f64(best * sample.factor);
-        answer(move |app| {
-            if let Some(form) = app.page_mut::<RangesForm>()
-                && form.grid.as_ref() == Ok(&grid)
-            {
-                form.time = time.ok();
-            }
-        })
-    });
+    app.open(RangesForm::new(of, earlier));
 }
 
 pub(super) fn sweep(app: &mut App, grid: PoseGrid) {
-    app.jobs.forget(jobs::Slot::Measure);
     app.open(Running {
         title: format!("Exploring: {}", name_of(grid.source())),
         poses: grid.poses(),

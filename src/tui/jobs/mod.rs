@@ -47,7 +47,6 @@ pub fn answer(act: impl FnOnce(&mut App) + Send + 'static) -> Answer {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Slot {
     Sweep,
-    Measure,
     Model,
     Names,
 }

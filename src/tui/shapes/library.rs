@@ -1,9 +1,5 @@
 //! Acts on the library: load, save, delete, restore. Each is a closure that the disk's worker runs, and its answer.
 
-use std::io::ErrorKind;
-
-use rustix::fs::{Access, access};
-use rustix::io::Errno;
 use taxel_files::formats::{Name, StoredShape};
 use taxel_files::storage::{Expected, Library, LibraryError, LoadedShape, ShapeOrigin};
 
@@ -89,10 +85,8 @@ fn put_on_matrix(app: &mut App, loaded: &LoadedShape) {
 fn ask_to_delete(app: &mut App, name: String) {
     app.jobs
         .read(format!("Looking for {name}"), move |library| {
-            let found = match library.deletable(&name) {
-                Ok(_) if is_read_only(library) => Err(format!("not deleted: {READ_ONLY}")),
-                found => found.map_err(|error| sentence(library, &error)),
-            };
+            let found = library.deletable(&name);
+            let found = found.map_err(|error| sentence(library, &error));
             answer(|app| match found {
                 Ok(name) => {
                     let text = format!("Delete {name:?}?");
@@ -106,7 +100,7 @@ fn ask_to_delete(app: &mut App, name: String) {
 fn delete(app: &mut App, name: String) {
     app.jobs.disk(format!("Deleting {name}"), move |library| {
         let deleted = library.delete(&name);
-        let deleted = deleted.map_err(|error| not_changed(library, "not deleted", &error));
+        let deleted = deleted.map_err(|error| sentence(library, &error));
         answer(|app| match deleted {
             Ok(name) => {
                 // The matrix may show the only copy that is left.
@@ -124,7 +118,7 @@ pub(crate) fn restore(app: &mut App, name: Option<String>) {
     let what = name.as_deref().unwrap_or("a shape");
     app.jobs.disk(format!("Restoring {what}"), move |library| {
         let restored = library.restore(name.as_deref());
-        let restored = restored.map_err(|error| not_changed(library, "not restored", &error));
+        let restored = restored.map_err(|error| sentence(library, &error));
         answer(|app| match restored {
             Ok(name) => {
                 changed(app);
@@ -194,11 +188,6 @@ fn stored(library: &Library, shape: &StoredShape, expected: Expected) -> Stored 
         Ok(stamp) => return Stored::As(stamp),
         Err(error) => error,
     };
-    if says_read_only(library, &error) {
-        return Stored::Not(format!(
-            "not saved: {READ_ONLY}; :write FILE saves elsewhere"
-        ));
-    }
     let reason = error.to_string();
     match error {
         LibraryError::Exists { stamp, .. } | LibraryError::Changed { stamp, .. } => {
@@ -264,55 +253,6 @@ fn ask_to_replace(app: &mut App, saving: Saving, stamp: u64, reason: String) {
     app.open(Question::new(format!("{reason}."), "Replace it?", yes));
 }
 
-/// Why nothing in the library can be changed.
-const READ_ONLY: &str = "the library is read-only";
-
-/// Whether the system lets nobody, or not this user, write in the library's folder.
-fn is_read_only(library: &Library) -> bool {
-    let writable = access(library.folder(), Access::WRITE_OK);
-    matches!(writable, Err(Errno::ACCESS | Errno::PERM | Errno::ROFS))
-}
-
-/// Whether an error says that nothing in the library can be changed. A file system that went read-only after an error
-/// of the disk may still call its folders writable, so the error itself decides first.
-fn says_read_only(library: &Library, error: &LibraryError) -> bool {
-    match error {
-        LibraryError::System(refused) => {
-            refused.error.kind() == ErrorKind::ReadOnlyFilesystem || is_read_only(library)
-        }
-        _ => false,
-    }
-}
-
-/// In a read-only library each file would be refused, so the file's name would only mislead.
-fn not_changed(library: &Library, what: &str, error: &LibraryError) -> String {
-    if says_read_only(library, error) {
-        format!("{what}: {READ_ONLY}")
-    } else {
-        sentence(library, error)
-    }
-}
-
 pub(crate) fn sentence(library: &Library, error: &LibraryError) -> String {
     format!("{error}{}", library.suggestion(error))
-}
-
-#[cfg(test)]
-mod tests {
-    use taxel_files::storage::FileError;
-
-    use super::*;
-
-    #[test]
-    fn the_error_itself_says_that_a_library_is_read_only() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let library = Library::open(folder.path().to_owned());
-        let said = |kind: ErrorKind| {
-            let error = FileError::cannot("write", folder.path())(kind.into());
-            not_changed(&library, "not deleted", &error.into())
-        };
-        let expected = "not deleted: the library is read-only";
-        assert_eq!(said(ErrorKind::ReadOnlyFilesystem), expected);
-        assert!(said(ErrorKind::StorageFull).contains("cannot write"));
-    }
 }

@@ -94,9 +94,6 @@ fn a_picture_is_explored_at_its_zoom() {
     );
     let swept = session(&format!("{placed}:explore --x0 5 --y0 5 --angle 0<Enter>"));
     shows(&swept, &["zoom x 0.50", "zoom y 0.25"]);
-    // A zoom that was typed in another form does not stay for this shape.
-    let typed = format!(":picture washer<Enter><Enter>e<Tab><Tab><C-u>0<Enter><Esc>{placed}e");
-    shows(&session(&typed), &["Zoom x  0.5 ", "Zoom y  0.25 "]);
 }
 
 #[test]
@@ -137,43 +134,6 @@ fn escape_stops_a_sweep_and_quitting_does_not_wait_for_it() {
 }
 
 #[test]
-fn the_expected_time_is_shown_while_ranges_are_typed() {
-    let mut program = Beside::new("fh<Enter>e");
-    shows(&program.session, &["3,600,000 poses"]);
-    program.until("3,600,000 poses, ");
-    program.then(
-        "0:9.99:0.001<Tab>0:9.99:0.001<Tab>0:359.9:0.1",
-        &["359,352,291,600 poses"],
-    );
-    program.until("359,352,291,600 poses, about ");
-    // Help covers the form when the time arrives, and a click asks for it like a key.
-    program.press("<BS><BS>9<F1>");
-    program.told.recv_timeout(DEADLINE).expect("it is told");
-    program.session.send(Message::Answered);
-    program.then("<Esc>", &["poses, about "]);
-    let anchor = |program: &mut Beside| {
-        let screen = program.session.screen();
-        let row = screen.lines().position(|line| line.contains("Anchor"));
-        let row = u16::try_from(row.expect("the anchor")).expect("small");
-        let (kind, column) = (MouseKind::Press, 50);
-        program
-            .session
-            .send(Message::Mouse(Mouse { kind, column, row }));
-    };
-    anchor(&mut program);
-    anchor(&mut program);
-    shows(&program.session, &["< centre >"]);
-    program.until("poses, about ");
-    // The time that was measured is not used for another grid.
-    program.press("<S-Tab><End><BS>5");
-    assert!(
-        !program.session.screen().contains("poses, about"),
-        "{}",
-        program.session.screen()
-    );
-}
-
-#[test]
 fn results_are_kept_when_the_page_is_left() {
     let mut program = Beside::new("fp<Enter>");
     program.press(SHORT);
@@ -208,13 +168,7 @@ fn the_imprint_of_a_row_is_the_one_on_the_matrix() {
                 press(&mut session, &format!("<Home><{row}x:Down><Enter>"));
                 let at = session.app().reading().imprint;
                 shows(&session, &["on the matrix; u takes it back"]);
-                press(&mut session, "ej");
-                assert!(
-                    !session.screen().contains("not among these"),
-                    "{}",
-                    session.screen()
-                );
-                press(&mut session, "<Enter>");
+                press(&mut session, "e<Enter>");
                 assert_eq!(
                     session.app().reading().imprint,
                     at,
@@ -251,7 +205,7 @@ fn keys_of_explore_that_can_do_nothing_say_so() {
 
 fn any_keys() -> impl Strategy<Value = Vec<&'static str>> {
     let keys = "e|e<Enter>|<Enter>|<Esc>|1|2|3|4|+|-|s|<Tab>|\
-        <S-Tab>|d|D|n|f|j|g|<Up>|<Down>|<Left>|<Right>|<Home>|<End>|<PageUp>|<PageDown>|<lt>|>|z|?|s|q|\
+        <S-Tab>|d|D|n|f|g|<Up>|<Down>|<Left>|<Right>|<Home>|<End>|<PageUp>|<PageDown>|<lt>|>|z|?|s|q|\
         y|x<C-u>|a.txt|<BS>|<C-u>|5:6:0.5|0:350:10|-3|fr<Enter>|fe<Tab>3<Enter>|<Space>|u|U|S8<Enter>|\
         <Space><Right><Space>|:explore --x0 -9:9:0.7 --y0 -9:15:1.1 --anchor centre<Enter>|\
         :explore --zoom-x 1:3:0.5<Enter>|";

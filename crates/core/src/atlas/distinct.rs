@@ -36,17 +36,6 @@ pub struct AtlasEntry {
     pub summary: ImprintSummary,
 }
 
-/// An imprint of an atlas that lies at another place than a given one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ShiftedImprint {
-    /// The number of the imprint.
-    pub id: u32,
-    /// The columns by which the given one lies further to the right; negative if it lies further to the left.
-    pub right: i8,
-    /// The rows by which the given one lies further down; negative if it lies further up.
-    pub down: i8,
-}
-
 /// The numbers of distinct imprints if images of the same imprint count as one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DistinctClasses {
@@ -166,35 +155,6 @@ impl Atlas {
         self.number(&key, hash)
     }
 
-    /// Returns the nearest imprint that differs from the given one only by a shift of whole taxels. None if there is no
-    /// such imprint.
-    pub fn find_shifted(&self, imprint: &Imprint) -> Option<ShiftedImprint> {
-        let size = self.layout.size();
-        let bounds = imprint.bounds()?;
-        let (wide, high) = (bounds.columns().len(), bounds.rows().len());
-        let mut nearest: Option<ShiftedImprint> = None;
-        for top in 0..=size.rows().checked_sub(u8::try_from(high).ok()?)? {
-            for left in 0..=size.columns().checked_sub(u8::try_from(wide).ok()?)? {
-                // Both are at most 64.
-                let right = bounds.left.cast_signed() - left.cast_signed();
-                let down = bounds.top.cast_signed() - top.cast_signed();
-                let far = |right: i8, down: i8| right.unsigned_abs() + down.unsigned_abs();
-                if nearest.is_some_and(|own| far(own.right, own.down) <= far(right, down)) {
-                    continue;
-                }
-                let mut moved = Imprint::empty(size);
-                for (row, from) in (usize::from(top)..).zip(bounds.rows()) {
-                    let word = imprint.words()[usize::from(from)] >> bounds.left;
-                    moved.set_word(row, word << left);
-                }
-                if let Some(id) = self.find(&moved) {
-                    nearest = Some(ShiftedImprint { id, right, down });
-                }
-            }
-        }
-        nearest
-    }
-
     /// Returns the number of the imprint that has a key.
     pub(crate) fn number(&self, key: &[u64], hash: u64) -> Option<u32> {
         let index = self.counter.find(key, hash)?;
@@ -236,52 +196,5 @@ impl Atlas {
             up_to_shifts: shifts.len(),
             up_to_symmetry: symmetry.len(),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-
-    use super::*;
-    use crate::figure::Figure;
-    use crate::pose::{Anchor, PoseGrid, Ranges};
-    use crate::sensor::Sensor;
-    use crate::sweep::Sweep;
-
-    #[test]
-    fn the_first_of_equally_near_imprints_is_found() {
-        let sensor = Sensor::default();
-        let bar = Figure::rectangle(3.0, 1.0).on(&sensor).expect("in range");
-        let found = |x0: &str, y0: &str| {
-            let ranges = [x0, y0, "0", "1", "1"].map(|range| range.parse().expect("a range"));
-            let grid = PoseGrid::new(bar.into(), sensor, Anchor::Corner, Ranges::new(ranges));
-            let atlas = Sweep::new(&grid.expect("in range")).run().atlas;
-            let mut between = Imprint::empty(MatrixSize::of(16, 16));
-            (4..7).for_each(|column| between.set(column, 4, true));
-            atlas.find_shifted(&between)
-        };
-        let first = |right, down| Some(ShiftedImprint { id: 0, right, down });
-        assert_eq!(found("2:6:4", "4"), first(2, 0));
-        assert_eq!(found("4", "2:6:4"), first(0, 2));
-    }
-
-    #[test]
-    fn the_nearest_of_shifted_imprints_is_found() -> Result<(), Box<dyn std::error::Error>> {
-        use crate::prelude::*;
-        let sensor = Sensor::default();
-        let bar = Source::from(Figure::rectangle(3.0, 1.0).on(&sensor)?);
-        let ranges = Ranges::new(
-            ["2:2.9:0.1", "2", "0", "1", "1"].map(|range| range.parse().expect("a range")),
-        );
-        let grid = PoseGrid::new(bar, sensor, Anchor::Corner, ranges)?;
-        let result = Sweep::new(&grid).run();
-        let atlas = &result.atlas;
-        let moved = Figure::rectangle(3.0, 1.0).at(7.0, 1.0).on(&sensor)?;
-        let imprint = Plane::new(sensor).touch(&moved);
-        assert_eq!(atlas.find(&imprint), None);
-        // Up to 2.4 the bar covers columns 2 to 4, from 2.6 on columns 3 to 5, which are nearer.
-        let found = atlas.find_shifted(&imprint).expect("the bar");
-        assert_eq!((found.id, found.right, found.down), (2, 4, -1));
-        Ok(())
     }
 }

@@ -13,7 +13,7 @@ mod statistics;
 mod values;
 
 pub(crate) use counter::{ImprintCounter, Layout};
-pub use distinct::{Atlas, AtlasEntry, DistinctClasses, ShiftedImprint};
+pub use distinct::{Atlas, AtlasEntry, DistinctClasses};
 pub use feature::{Feature, ImprintSummary, feature_values, features};
 pub use histogram::Histogram;
 pub use key::{ImprintKey, KeyTable};

@@ -39,4 +39,4 @@ mod count;
 pub use count::{CountedImprints, PoseRun};
 pub use plan::{MergeError, Shard, ShardError};
 pub use result::{Parts, PartsError, SweepMerge, SweepResult};
-pub use run::{Sweep, TakeRow, TimingSample};
+pub use run::{Sweep, TakeRow};
