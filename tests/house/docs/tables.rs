@@ -1,6 +1,6 @@
 //! Tables in the documents, made from the program's own tables.
 
-use taxel::tui::keys::{Context, DEFAULT_KEYS};
+use taxel::tui::keys::{Binding, Context, DEFAULT_KEYS};
 use taxel::tui::prompt::commands::listed;
 use taxel_core::description::{DESCRIPTORS, Dimension};
 use taxel_core::parameter::{PARAMETERS, Parameter};
@@ -21,19 +21,36 @@ pub(crate) fn descriptors() -> String {
     format!("\n| key | symbol | meaning | unit |\n|---|---|---|---|\n{rows}\n")
 }
 
-/// One table for each place of the screen.
+/// A table for each of these places. The others, such as a question, show all their keys at the bottom of the screen.
 pub(crate) fn keys() -> String {
+    let places = [
+        Context::Matrix,
+        Context::Hold,
+        Context::Form,
+        Context::List,
+        Context::Explore,
+        Context::Imprints,
+        Context::Map,
+        Context::Recognise,
+        Context::Live,
+        Context::Everywhere,
+    ];
+    // The text of the page explains these keys, which do the same in many places.
+    let usual = ["Up Down", "PageUp PageDown", "Home End", "?", "F1"];
+    let is_usual = |binding: &Binding| {
+        let labels = binding.labels();
+        let own = [Context::Matrix, Context::Form, Context::Live];
+        labels == "?"
+            || !own.contains(&binding.context)
+                && (usual.contains(&labels.as_str()) || labels.starts_with("Esc"))
+    };
     let mut text = String::new();
-    for context in Context::all() {
-        text += &format!(
-            "\n## {}\n\n| key | what it does |\n|---|---|\n",
-            context.title()
-        );
-        for binding in DEFAULT_KEYS
-            .iter()
-            .filter(|binding| binding.context == context)
-        {
-            text += &format!("| `{}` | {} |\n", binding.labels(), binding.help);
+    for place in places {
+        let title = place.title();
+        text += &format!("\n### {title}\n\n| key | what it does |\n|---|---|\n");
+        let own = DEFAULT_KEYS.iter().filter(|row| row.context == place);
+        for row in own.filter(|row| !is_usual(row)) {
+            text += &format!("| `{}` | {} |\n", row.labels(), row.help);
         }
     }
     text + "\n"
@@ -45,16 +62,15 @@ pub(crate) fn prompt() -> String {
     let live = live.filter(|own| ["at-least", "size"].contains(&own.line.as_str()));
     let rows = listed(Context::Matrix).into_iter().chain(live);
     let rows = rows.map(|offer| {
-        let (follows, help) = (offer.follows, offer.help.unwrap_or_default());
-        let follows = if follows.is_empty() {
-            String::new()
-        } else {
-            format!("`{follows}`")
-        };
-        format!("| `:{}` | {follows} | {help} |\n", offer.line)
+        let line = format!("{} {}", offer.line, offer.follows);
+        format!(
+            "| `:{}` | {} |\n",
+            line.trim_end(),
+            offer.help.unwrap_or_default()
+        )
     });
     let rows: String = rows.collect();
-    format!("\n| command | what may follow | what it does |\n|---|---|---|\n{rows}\n")
+    format!("\n| command | what it does |\n|---|---|\n{rows}\n")
 }
 
 /// The parameters that can be set, with their ranges on the paper's sensor.
