@@ -27,7 +27,7 @@ static SAMPLES: LazyLock<PathBuf> = LazyLock::new(|| {
     let lines = blocks(&guide, "sh").find(|lines| lines.contains("CLONE"));
     let clone = root().to_str().expect("a path in UTF-8");
     let lines = lines.expect("the samples").replace("CLONE", clone);
-    succeeded(folder, &format!("set -e\n{lines}"));
+    printed(folder, &format!("set -e\n{lines}"));
     folder.join("samples")
 });
 
@@ -55,12 +55,16 @@ fn shell(folder: &Path, lines: &str) -> Output {
         .expect("there is a shell")
 }
 
-/// Returns what lines print that must succeed.
-fn succeeded(folder: &Path, lines: &str) -> String {
+/// Returns what lines print that must succeed; nothing if there is no such program as the last one of them.
+fn printed(folder: &Path, lines: &str) -> Option<String> {
     let output = shell(folder, lines);
     let said = String::from_utf8_lossy(&output.stderr);
+    if output.status.code() == Some(127) {
+        skipped(&format!("lines of the documents are not run: {said}"));
+        return None;
+    }
     assert!(output.status.success(), "{lines}: {said}");
-    String::from_utf8(output.stdout).expect("the output is text")
+    Some(String::from_utf8(output.stdout).expect("the output is text"))
 }
 
 /// Runs the blocks of a page in their order. Returns the page with their present output, and its folder.
@@ -75,7 +79,7 @@ pub(crate) fn run(page: &Path, text: &str) -> (String, PathBuf) {
             Some(("python", program)) => python(furnished(&folder), program),
             Some(("taxel", script)) => {
                 fs::write(furnished(&folder).join("shown.taxel"), script).expect("written");
-                succeeded(&folder, "taxel script --update shown.taxel");
+                printed(&folder, "taxel script --update shown.taxel");
             }
             _ => {}
         }
@@ -88,7 +92,7 @@ fn furnished(folder: &Path) -> &Path {
     let (samples, to) = (SAMPLES.display(), folder.display());
     if !folder.exists() {
         let lines = format!("cp -r '{samples}' '{to}' && ln -s \"$PWD/examples\" '{to}/examples'");
-        succeeded(root(), &lines);
+        printed(root(), &lines);
     }
     folder
 }
@@ -105,7 +109,10 @@ fn console(folder: &Path, block: &str) -> String {
             typed.push(more);
         }
         let command: Vec<&str> = typed.iter().map(|line| &line[2..]).collect();
-        let printed = succeeded(folder, &command.join("\n"));
+        // Later lines may need what this one writes, so the block stays as it is.
+        let Some(printed) = printed(folder, &command.join("\n")) else {
+            return block.to_owned();
+        };
         let printed = printed.lines().filter(|_| shows);
         for line in typed.into_iter().chain(printed) {
             text += line.trim_end();
