@@ -113,26 +113,17 @@ impl Outline {
     /// rings cross or overlap.
     pub fn new(rings: Vec<Ring>, pitch_mm: Option<f64>) -> Result<Self, OutlineError> {
         let form = Form::new(rings, pitch_mm)?;
-        let outline = Self {
+        Ok(Self {
             form: Arc::new(form),
-            values: Values::default(),
+            values: Values::upright(0.0, 0.0),
             name: None,
-        };
-        Ok(outline.at_home())
+        })
     }
 
     /// Returns the same outline in its own place, as a new one is.
     #[must_use]
     pub fn at_home(mut self) -> Self {
-        use Parameter::{Angle, X0, Y0, ZoomX, ZoomY};
-        let home = [
-            (X0, 0.0),
-            (Y0, 0.0),
-            (Angle, 0.0),
-            (ZoomX, 1.0),
-            (ZoomY, 1.0),
-        ];
-        self.values = Values::unchecked(home);
+        self.values = Values::upright(0.0, 0.0);
         self
     }
 
@@ -222,26 +213,40 @@ impl Solid for Outline {
             )
         };
         let centre = Point::new(x0 * zoom_x, y0 * zoom_y).moved(zoomed(self.form.half));
-        for ring in &self.form.drawn {
-            match ring {
-                DrawnRing::Polygon(points) => {
-                    let place = |&point: &Point<Double>| centre.moved(turn.of(zoomed(point)));
-                    let Some(mut from) = points.last().map(place) else {
-                        continue;
-                    };
-                    for to in points.iter().map(place) {
-                        pen.edge(from, to);
-                        from = to;
-                    }
+        draw(
+            &self.form.drawn,
+            |point| centre.moved(turn.of(zoomed(point))),
+            |vector| turn.of(zoomed(vector)),
+            pen,
+        );
+    }
+}
+
+/// Draws rings, given where their points and their vectors go.
+fn draw<T: Real>(
+    rings: &[DrawnRing],
+    place: impl Fn(Point<Double>) -> Point<T>,
+    turned: impl Fn(Point<Double>) -> Point<T>,
+    pen: &mut impl Pen<T>,
+) {
+    for ring in rings {
+        match ring {
+            DrawnRing::Polygon(points) => {
+                let Some(mut from) = points.last().map(|&point| place(point)) else {
+                    continue;
+                };
+                for to in points.iter().map(|&point| place(point)) {
+                    pen.edge(from, to);
+                    from = to;
                 }
-                DrawnRing::Ellipse(own, material) => {
-                    let ellipse = Ellipse {
-                        centre: centre.moved(turn.of(zoomed(own.centre))),
-                        across: turn.of(zoomed(own.across)),
-                        along: turn.of(zoomed(own.along)),
-                    };
-                    pen.ellipse(&ellipse, *material);
-                }
+            }
+            DrawnRing::Ellipse(own, material) => {
+                let ellipse = Ellipse {
+                    centre: place(own.centre),
+                    across: turned(own.across),
+                    along: turned(own.along),
+                };
+                pen.ellipse(&ellipse, *material);
             }
         }
     }
@@ -369,24 +374,7 @@ struct Rings<'a>(&'a [DrawnRing]);
 impl Solid for Rings<'_> {
     fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
         let point = |own: Point<Double>| Point::new(T::from_double(own.x), T::from_double(own.y));
-        for ring in self.0 {
-            match ring {
-                DrawnRing::Polygon(points) => {
-                    let next = points.iter().cycle().skip(1);
-                    for (&from, &to) in points.iter().zip(next) {
-                        pen.edge(point(from), point(to));
-                    }
-                }
-                DrawnRing::Ellipse(own, material) => {
-                    let ellipse = Ellipse {
-                        centre: point(own.centre),
-                        across: point(own.across),
-                        along: point(own.along),
-                    };
-                    pen.ellipse(&ellipse, *material);
-                }
-            }
-        }
+        draw(self.0, point, point, pen);
     }
 }
 
@@ -485,22 +473,14 @@ fn arrange(rings: &mut [DrawnRing]) -> Result<(), OutlineError> {
         };
         let beside = first.beside(if area > 0.0 { size } else { -size });
         let is_hole = bins.count(&pieces, beside, Some(number)) % 2 == 1;
-        match ring {
-            DrawnRing::Polygon(points) => {
-                if (area > 0.0) == is_hole {
-                    points.reverse();
-                    for piece in pieces.iter_mut().filter(|piece| piece.ring == number) {
-                        std::mem::swap(&mut piece.from, &mut piece.to);
-                    }
-                }
+        // An ellipse runs clockwise.
+        if (area > 0.0) == is_hole {
+            match ring {
+                DrawnRing::Polygon(points) => points.reverse(),
+                DrawnRing::Ellipse(_, material) => *material = Side::Outside,
             }
-            DrawnRing::Ellipse(_, material) => {
-                if is_hole {
-                    *material = Side::Outside;
-                    for piece in pieces.iter_mut().filter(|piece| piece.ring == number) {
-                        std::mem::swap(&mut piece.from, &mut piece.to);
-                    }
-                }
+            for piece in pieces.iter_mut().filter(|piece| piece.ring == number) {
+                std::mem::swap(&mut piece.from, &mut piece.to);
             }
         }
     }

@@ -43,13 +43,11 @@ impl PartialEq for Picture {
 impl Picture {
     /// Creates a picture that leaves the imprint where it is: at its own corner, with angle 0 and zoom 1.
     pub fn at_home(imprint: Imprint) -> Self {
-        use Parameter::{Angle, X0, Y0, ZoomX, ZoomY};
         let bounds = imprint.bounds();
         let (left, top) = bounds.map_or((0, 0), |bounds| (bounds.left, bounds.top));
-        let (x0, y0) = ((X0, left.into()), (Y0, top.into()));
         Self {
             imprint,
-            values: Values::unchecked([x0, y0, (Angle, 0.0), (ZoomX, 1.0), (ZoomY, 1.0)]),
+            values: Values::upright(left.into(), top.into()),
             name: None,
         }
     }

@@ -20,6 +20,12 @@ impl Values {
         values
     }
 
+    /// Creates the values of a picture or an outline that is neither zoomed nor turned.
+    pub(crate) fn upright(x0: f64, y0: f64) -> Self {
+        use Parameter::{Angle, X0, Y0, ZoomX, ZoomY};
+        Self::unchecked([(X0, x0), (Y0, y0), (Angle, 0.0), (ZoomX, 1.0), (ZoomY, 1.0)])
+    }
+
     /// Creates the values that `value` returns for the parameters `own` of a shape, each in range on the sensor. Only
     /// the thickness may be missing.
     pub(crate) fn new(

@@ -34,9 +34,7 @@ mod result;
 
 mod run;
 
-mod count;
-
-pub use count::{CountedImprints, PoseRun};
 pub use plan::{MergeError, Shard, ShardError};
 pub use result::{Parts, PartsError, SweepMerge, SweepResult};
+pub(crate) use run::CountedImprints;
 pub use run::{Sweep, TakeRow};
