@@ -411,7 +411,6 @@ fn mistyped_names_are_refused_before_training() {
         "recognise square.txt --noise 0.01 --mask nowhere",
         "frames nowhere --all --at-least 1 --model figures",
         "model confusion figures --export there.svg",
-        "model confusion figures --noise 0.1 --dead 4000",
     ] {
         let arguments: Vec<&str> = line.split(' ').collect();
         let mut program = program(&arguments, "C.UTF-8");
@@ -421,8 +420,7 @@ fn mistyped_names_are_refused_before_training() {
         let run = finish(program.spawn().expect("it starts"), b"");
         assert_eq!(run.status, Some(1), "{line}: {}", run.stderr);
         let said = |name: &str| run.stderr.contains(name);
-        let wrong = ["nowhere", "there.svg", "--dead 4000 is above 256"];
-        assert!(wrong.into_iter().any(said), "{}", run.stderr);
+        assert!(said("nowhere") || said("there.svg"), "{}", run.stderr);
         let is_trained = fs::exists(place.path("cache")).expect("it can be looked at");
         assert!(!is_trained, "{line}");
     }

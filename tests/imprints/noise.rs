@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use serde_json::Value;
 use taxel_core::prelude::*;
 use taxel_core::progress::ToTheEnd;
-use taxel_core::recognition::{AnswerState, Evidence, Model, NamedShape, Noise, NoisyTouches};
+use taxel_core::recognition::{AnswerState, Evidence, Model, NamedShape, Noise};
 
 use crate::common::size;
 use crate::recognition::{float, published, ranges, s1, s4, sensor, train};
@@ -376,8 +376,7 @@ fn the_recognition_rate_is_as_published_and_as_claimed() {
     // S1 with one flipped taxel in a hundred on 16 × 16: 0.654, from 7,000 touches.
     let model = train(s1(), 32, published());
     let noise = Noise::new(0.01).expect("in range");
-    let touches = NoisyTouches::new(Sensor::default().size(), noise, 1000, 7);
-    let rate = model.recognition_rate(&touches, &noise, &ToTheEnd);
+    let rate = model.recognition_rate(size(16, 16), &noise, 1000, 7, &ToTheEnd);
     let rate = rate.expect("not stopped");
     let apart = |found: f64, expected: f64, error: f64| (found - expected).abs() / error;
     println!("{rate:?}");
@@ -399,8 +398,7 @@ fn the_claimed_accuracy_is_reached_at_every_noise() {
         let model = train(set, 32, published());
         for flip in [0.001, 0.01, 0.05] {
             let noise = Noise::new(flip).expect("in range");
-            let touches = NoisyTouches::new(Sensor::default().size(), noise, 150, 11);
-            let rate = model.recognition_rate(&touches, &noise, &ToTheEnd);
+            let rate = model.recognition_rate(size(16, 16), &noise, 150, 11, &ToTheEnd);
             let rate = rate.expect("not stopped");
             let apart = (rate.mean_confidence - rate.accuracy).abs() / rate.standard_error;
             assert!(apart < 3.0, "{name} at {flip}: {rate:?}");

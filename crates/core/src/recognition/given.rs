@@ -6,14 +6,10 @@ use rayon::prelude::*;
 
 use crate::atlas::ImprintSummary;
 use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, ExactValue, Value};
-use crate::imprint::Imprint;
 
-use crate::parameter::number::share;
-use crate::progress::Progress;
 use crate::quote::{did_you_mean, shortened};
 use crate::recognition::evaluation::Evaluation;
-use crate::recognition::model::{Model, ShapeCount, add_count, first_of_most};
-use crate::recognition::simulation::{NoisyTouches, RecognitionRate};
+use crate::recognition::model::{Model, ShapeCount, add_count};
 
 /// A descriptor that says something about the shape, because it does not change when the imprint is moved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -152,39 +148,6 @@ impl GivenDescriptors {
             }
         }
         Evaluation::of_classes(model, counts.iter().map(Vec::as_slice))
-    }
-
-    /// Draws noisy touches as [`Model::recognition_rate`] does and names them by these descriptors alone: by the shape
-    /// that has their values most often without noise. Values that no shape has without noise get no name, which counts
-    /// as wrong. None if `progress` stops it, or if no imprint fits on the sensor of the touches.
-    pub fn rate(
-        &self,
-        model: &Model,
-        touches: &NoisyTouches,
-        progress: &dyn Progress,
-    ) -> Option<RecognitionRate> {
-        let mut counts: HashMap<Vec<ExactValue>, Vec<u128>> = HashMap::new();
-        for (key, description) in descriptions(model).iter().enumerate() {
-            let own = counts.entry(self.values(description.as_ref()));
-            let own = own.or_insert_with(|| vec![0; model.shapes().len()]);
-            for &count in model.counts(key) {
-                own[usize::from(count.shape)] += model.weighted(count);
-            }
-        }
-        let names: HashMap<_, _> = counts
-            .into_iter()
-            .filter_map(|(values, own)| {
-                let all = own.iter().sum();
-                let (shape, most) = first_of_most(own.into_iter().enumerate())?;
-                Some((values, (shape, share(most, all))))
-            })
-            .collect();
-        let judge = |touch: &Imprint, _: &Imprint| {
-            let description = ImprintSummary::of(touch).description;
-            let named = names.get(&self.values(description.as_ref())).copied();
-            (named.is_some(), named)
-        };
-        model.simulated(touches, progress, &judge)
     }
 
     fn values(&self, description: Option<&Description>) -> Vec<ExactValue> {

@@ -90,26 +90,15 @@ impl Model {
         own.map(bounds).collect()
     }
 
-    /// Returns, for each shape of the set, how many of its poses leave an imprint that does not fit on a matrix of
-    /// this size. [`Self::recognition_rate`] draws no such touches.
-    pub fn poses_too_large(&self, size: MatrixSize) -> Vec<u64> {
-        self.sums_by_shape(size, |shifts| u64::from(shifts == 0))
-    }
-
     /// Returns the number of touches of each shape on a matrix of this size: its poses, in every place where they
     /// fit.
     fn touches_on(&self, size: MatrixSize) -> Vec<u64> {
-        self.sums_by_shape(size, |shifts| shifts)
-    }
-
-    /// Adds up the poses of each shape; one whose key has this number of places on a matrix counts `times`.
-    fn sums_by_shape(&self, size: MatrixSize, times: fn(u64) -> u64) -> Vec<u64> {
         let mut sums = vec![0; self.shapes().len()];
         let ScanTables { index, poses } = self.scan_tables();
         for (own, poses) in index.boxes().iter().zip(poses.chunks(sums.len())) {
-            let times = times(shift_count((own.width, own.height), size));
+            let places = shift_count((own.width, own.height), size);
             for (sum, poses) in sums.iter_mut().zip(poses) {
-                *sum += poses * times;
+                *sum += poses * places;
             }
         }
         sums

@@ -49,7 +49,7 @@ pub use model::{Model, ModelError, ModelHead, ModelMerge, NamedShape, ShapeCount
 pub use pose_estimate::{AngleEstimate, PoseEstimate};
 pub use scan::Nearest;
 pub use separation::{Separation, SeparationPoint, SizeAxis, SmallestSize};
-pub use simulation::{MOST_TOUCHES, NoisyTouches, RecognitionRate, TouchesUntil, below};
+pub use simulation::{MOST_TOUCHES, RecognitionRate, TouchesUntil, below};
 pub use training::{
     CellPositions, GridSteps, LEAST_SIDE, Training, TrainingError, default_figures, equal_figures,
 };

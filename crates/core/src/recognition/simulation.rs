@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use crate::atlas::ImprintKey;
 use crate::imprint::Imprint;
-use crate::index::{index, lower_word, narrow};
+use crate::index::{index, lower_word};
 use crate::parameter::number::share;
 use crate::progress::Progress;
 use crate::recognition::likelihood::Noise;
@@ -65,10 +65,6 @@ impl RecognitionRate {
     }
 }
 
-/// The result of a touch: whether the model holds its imprint, and the name that it got (the shape and its
-/// probability), if any.
-pub(super) type Judgement = (bool, Option<(usize, f64)>);
-
 #[derive(Clone, Copy, Default)]
 struct ShapeRate {
     touches: u64,
@@ -79,13 +75,6 @@ struct ShapeRate {
 }
 
 impl ShapeRate {
-    fn count(&mut self, shape: usize, (is_held, named): Judgement) {
-        self.touches += 1;
-        self.right += u64::from(named.is_some_and(|(named, _)| named == shape));
-        self.held += u64::from(is_held);
-        self.confidence += named.map_or(0.0, |(_, probability)| probability);
-    }
-
     fn add(&mut self, more: Self) {
         self.touches += more.touches;
         self.right += more.right;
@@ -97,33 +86,6 @@ impl ShapeRate {
     fn variance(&self) -> f64 {
         let wrong = self.touches - self.right;
         float(self.right) * float(wrong) / float(self.touches.max(1))
-    }
-}
-
-/// Touches to simulate: the same number of each shape, each in a random place, with taxels that flip or are dead.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NoisyTouches {
-    size: MatrixSize,
-    noise: Noise,
-    /// The number of additional dead taxels, at first 0. They are drawn anew for each touch, and the classifier knows
-    /// which they are. So touches are independent, and the standard error includes how much sensors with different dead
-    /// taxels differ. The same seed draws the same dead taxels for any noise.
-    pub random_dead: u32,
-    per_shape: u64,
-    seed: u64,
-}
-
-impl NoisyTouches {
-    /// Creates a simulation that draws `per_shape` touches of each shape on a matrix of this size. Taxels flip as
-    /// `noise` says, and its dead taxels always read as inactive.
-    pub fn new(size: MatrixSize, noise: Noise, per_shape: u64, seed: u64) -> Self {
-        Self {
-            size,
-            noise,
-            random_dead: 0,
-            per_shape,
-            seed,
-        }
     }
 }
 
@@ -156,42 +118,25 @@ impl Draw {
 }
 
 impl Model {
-    /// Draws touches of each shape, names the shape of each as the noise `assumed` says, and counts. The dead taxels
-    /// of `assumed` are left out, and so are those drawn for each touch.
+    /// Draws `per_shape` touches of each shape, whose taxels flip as the noise says, names the shape of each under that
+    /// noise, and counts.
     ///
-    /// Each imprint is put in a random place on the sensor of the touches where all of it fits. Imprints that fit
-    /// nowhere are not drawn ([`Self::poses_too_large`] counts them): the rate is that of the others. A shape none of
-    /// whose imprints fits has no touches.
+    /// Each imprint is put in a random place on a matrix of this size where all of it fits. Imprints that fit nowhere
+    /// are not drawn: the rate is that of the others. A shape none of whose imprints fits has no touches.
     ///
-    /// `progress` is called with the number of touches done since the last call, and stops the simulation by
-    /// returning `Break`. Returns None if it was stopped, or if there is no touch.
+    /// `progress` is called with 1 after each touch, and stops the simulation by returning `Break`. Returns None if it
+    /// was stopped, or if there is no touch.
     pub fn recognition_rate(
         &self,
-        touches: &NoisyTouches,
-        assumed: &Noise,
+        size: MatrixSize,
+        noise: &Noise,
+        per_shape: u64,
+        seed: u64,
         progress: &dyn Progress,
-    ) -> Option<RecognitionRate> {
-        let judge = |touch: &Imprint, dead: &Imprint| {
-            let known = assumed.dead().map_or(*dead, |known| dead.union(known));
-            let posterior = self.posterior_under(touch, &assumed.with_dead(known));
-            let named = posterior.and_then(|own| first_of_most(own.into_iter().enumerate()));
-            (self.keys().find(&ImprintKey::of(touch)).is_some(), named)
-        };
-        self.simulated(touches, progress, &judge)
-    }
-
-    /// Draws touches as [`Self::recognition_rate`] does. `judge` names the shape of each touch, given the dead taxels
-    /// that were drawn for it.
-    pub(super) fn simulated(
-        &self,
-        touches: &NoisyTouches,
-        progress: &dyn Progress,
-        judge: &(dyn Fn(&Imprint, &Imprint) -> Judgement + Sync),
     ) -> Option<RecognitionRate> {
         const CHUNK: u64 = 50;
         /// Chunks whose counts are held at a time: a billion touches would take gigabytes.
         const HELD: usize = 4096;
-        let (size, per_shape) = (touches.size, touches.per_shape);
         let shifts = |key: usize| {
             let key = self.keys().get(key);
             shift_count((key.width, key.height), size)
@@ -201,21 +146,23 @@ impl Model {
         let tasks = per_shape.div_ceil(CHUNK).saturating_mul(shapes);
         let stopped = AtomicBool::new(false);
         let rate = |number: u64| {
-            let (chunk, draw) = (number / shapes, &draws[index(number % shapes)]);
-            let mut random = generator(touches.seed, number);
-            // Tasks are numbered from the last one down: independent of all touches, and the same for any noise.
-            let mut random_of_dead = generator(touches.seed, !number);
+            let (chunk, shape) = (number / shapes, index(number % shapes));
+            let mut random = generator(seed, number);
             let mut rate = ShapeRate::default();
             for _ in 0..CHUNK.min(per_shape - chunk * CHUNK) {
                 if stopped.load(Ordering::Relaxed) {
                     break;
                 }
-                let Some(key) = draw.key(&mut random) else {
+                let Some(key) = draws[shape].key(&mut random) else {
                     break;
                 };
-                let dead = random_taxels(size, touches.random_dead, &mut random_of_dead);
-                let touch = self.touch_of(key, touches, &mut random).without(&dead);
-                rate.count(index(number % shapes), judge(&touch, &dead));
+                let touch = self.touch_of(key, size, noise, &mut random);
+                let posterior = self.posterior_under(&touch, noise);
+                let named = posterior.and_then(|own| first_of_most(own.into_iter().enumerate()));
+                rate.touches += 1;
+                rate.right += u64::from(named.is_some_and(|(named, _)| named == shape));
+                rate.held += u64::from(self.keys().find(&ImprintKey::of(&touch)).is_some());
+                rate.confidence += named.map_or(0.0, |(_, probability)| probability);
                 if progress.add(1).is_break() {
                     stopped.store(true, Ordering::Relaxed);
                 }
@@ -240,8 +187,7 @@ impl Model {
         (rate.touches > 0).then_some(rate)
     }
 
-    fn touch_of(&self, key: usize, touches: &NoisyTouches, random: &mut Pcg64) -> Imprint {
-        let (size, noise) = (touches.size, &touches.noise);
+    fn touch_of(&self, key: usize, size: MatrixSize, noise: &Noise, random: &mut Pcg64) -> Imprint {
         let (columns, rows) = (size.columns(), size.rows());
         let key = self.keys().get(key);
         let mut touch = Imprint::empty(size);
@@ -276,23 +222,6 @@ pub fn below(random: &mut Pcg64, end: u64) -> u64 {
 
 pub(super) fn unit(random: &mut Pcg64) -> f64 {
     float(random.next_u64() >> 11) / float(1 << 53)
-}
-
-/// Draws `count` different taxels of a matrix; all taxels if it has no more.
-pub(super) fn random_taxels(size: MatrixSize, count: u32, random: &mut Pcg64) -> Imprint {
-    let mut taxels = Imprint::empty(size);
-    let (columns, rows) = (size.columns(), size.rows());
-    let mut missing = count.min(narrow(size.cells()));
-    while missing > 0 {
-        let [column, row] = [columns, rows].map(|side| below(random, side.into()));
-        if let (Ok(column), Ok(row)) = (u8::try_from(column), u8::try_from(row))
-            && !taxels.get(column, row)
-        {
-            taxels.set(column, row, true);
-            missing -= 1;
-        }
-    }
-    taxels
 }
 
 /// The number of touches of a shape until some shape, right or wrong, is as probable as wanted.
@@ -421,8 +350,7 @@ mod tests {
         let training = Training::new(shapes, sensor, Anchor::Centre, ranges);
         let model = training.expect("a set").run().expect("not stopped");
         let noise = Noise::new(0.0).expect("in range");
-        let touches = NoisyTouches::new(sensor.size(), noise, 2000, 0);
-        let rate = model.recognition_rate(&touches, &noise, &ToTheEnd);
+        let rate = model.recognition_rate(sensor.size(), &noise, 2000, 0, &ToTheEnd);
         let rate = rate.expect("not stopped");
         // The long one is always named, so only the confidence is left to chance.
         assert_eq!(rate.touches, 4000);
@@ -432,42 +360,9 @@ mod tests {
         assert!((rate.mean_confidence - 0.9).abs() < 0.002, "{rate:?}");
     }
 
-    /// On a matrix as large as the shapes, one taxel tells them apart. If it is dead, the first shape is named.
-    #[test]
-    fn the_standard_error_includes_which_taxels_are_dead() {
-        let sensor = Sensor::new(5, 1).expect("in range");
-        let bar = |length| {
-            Figure::rectangle(length, 1.0)
-                .on(&sensor)
-                .expect("in range")
-        };
-        let shapes = [("long", 5.0), ("bitten", 4.0)];
-        let shapes = shapes.map(|(name, length)| NamedShape::new(name, bar(length)));
-        let range = |text: &str| text.parse().expect("a range");
-        let ranges = Ranges::new(["0", "0", "0", "1", "1"].map(range));
-        let training = Training::new(shapes, sensor, Anchor::Corner, ranges);
-        let model = training.expect("a set").run().expect("not stopped");
-        let noise = Noise::new(0.0).expect("in range");
-        let rate = |seed| {
-            let mut touches = NoisyTouches::new(sensor.size(), noise, 200, seed);
-            touches.random_dead = 2;
-            let rate = model.recognition_rate(&touches, &noise, &ToTheEnd);
-            rate.expect("not stopped")
-        };
-        let rates: Vec<RecognitionRate> = (0..100).map(rate).collect();
-        let count = float(rates.len() as u64);
-        let mean = rates.iter().map(|rate| rate.accuracy).sum::<f64>() / count;
-        let apart = rates.iter().map(|rate| (rate.accuracy - mean).powi(2));
-        let found = (apart.sum::<f64>() / (count - 1.0)).sqrt();
-        let stated = rates.iter().map(|rate| rate.standard_error);
-        let stated = stated.sum::<f64>() / count;
-        assert!(stated > 0.0);
-        assert!((found / stated - 1.0).abs() < 0.3, "{found} {stated}");
-    }
-
     /// The imprint of the bar is 5 taxels long, or 6 if the bar lies between taxels.
     #[test]
-    fn touches_that_fit_nowhere_are_left_out_and_counted() {
+    fn touches_that_fit_nowhere_are_left_out() {
         let sensor = Sensor::default();
         let bar = Figure::rectangle(5.2, 1.0).on(&sensor).expect("in range");
         let shapes = [NamedShape::new("bar", bar)];
@@ -475,13 +370,10 @@ mod tests {
         let ranges = Ranges::new(["5:5.9:0.1", "5", "0", "1", "1"].map(range));
         let training = Training::new(shapes, sensor, Anchor::Corner, ranges);
         let model = training.expect("a set").run().expect("not stopped");
-        let too_large = [5, 6, 7].map(|columns| model.poses_too_large(MatrixSize::of(columns, 1)));
-        assert_eq!(too_large, [vec![3], vec![0], vec![0]]);
         let noise = Noise::new(0.0).expect("in range");
         let rate = |columns| {
-            let sensor = Sensor::new(columns, 1).expect("in range");
-            let touches = NoisyTouches::new(sensor.size(), noise, 10, 0);
-            let rate = model.recognition_rate(&touches, &noise, &ToTheEnd);
+            let size = MatrixSize::of(columns, 1);
+            let rate = model.recognition_rate(size, &noise, 10, 0, &ToTheEnd);
             rate.map(|rate| rate.touches)
         };
         assert_eq!((rate(5), rate(4), rate(1)), (Some(10), None, None));
@@ -499,32 +391,6 @@ mod tests {
         // The variances are 25 and 16.
         let error = (9.0 * 25.0 + 16.0_f64).sqrt() / 400.0;
         assert!((found.standard_error - error).abs() < 1e-15, "{found:?}");
-    }
-
-    #[test]
-    fn drawing_more_taxels_than_there_are_draws_all() {
-        let mut random = generator(0, 0);
-        let taxels = random_taxels(MatrixSize::LARGEST, 5000, &mut random);
-        assert_eq!(taxels.count(), 64 * 64);
-        assert_eq!(
-            random_taxels(MatrixSize::of(16, 16), 7, &mut random).count(),
-            7
-        );
-    }
-
-    #[test]
-    fn dead_taxels_are_drawn_from_random_numbers_of_their_own() {
-        for seed in 0..4 {
-            let mut random = generator(seed, 0);
-            let side = || below(&mut random, 64);
-            let numbers: Vec<u64> = std::iter::repeat_with(side).take(100).collect();
-            let dead = random_taxels(MatrixSize::LARGEST, 50, &mut generator(seed, !0));
-            let is_dead = |place: &&[u64]| {
-                let place = [place[0], place[1]].map(|side| u8::try_from(side).expect("below 64"));
-                dead.get(place[0], place[1])
-            };
-            assert!(numbers.chunks(2).filter(is_dead).count() < 10);
-        }
     }
 
     #[test]
@@ -572,8 +438,7 @@ mod tests {
         });
         assert_eq!(means, Some(vec![(None, None), (None, None)]));
         let noise = Noise::new(0.0).expect("in range");
-        let touches = NoisyTouches::new(sensor.size(), noise, 10, 0);
-        let rate = model.recognition_rate(&touches, &noise, &ToTheEnd);
+        let rate = model.recognition_rate(sensor.size(), &noise, 10, 0, &ToTheEnd);
         assert_eq!(rate.map(|rate| rate.touches), Some(20));
         // One is always named right, the other never: the accuracy is ½ for every seed.
         let error = rate.map(|rate| (rate.accuracy, rate.standard_error));

@@ -52,9 +52,8 @@ side_ratio, filling, cg_cd, cg_cd_direction. CG-CD at full precision is more of
 a fingerprint than a measurement: --round cg_cd=0.01 shows what it is worth when
 measured to a hundredth of a cell.
 
-Without --test, --noise tests touches in random places on the sensor. Imprints
-that do not fit on a smaller --matrix are left out, and standard error says how
-many.
+Without --test, --noise tests touches in random places on the sensor, whose
+taxels flip.
 
 Classifiers: z takes the shape whose mean is nearest, in standard deviations;
 knn takes the shape of the nearest touches, template that of the nearest
@@ -66,7 +65,7 @@ Examples:
   taxel model confusion parts --given na,p --json
   taxel model confusion parts --greedy --round cg_cd=0.01
   taxel model confusion parts --classifier knn
-  taxel model confusion parts --noise 0:0.1:0.01 --dead 0,4 --touches 200
+  taxel model confusion parts --noise 0:0.1:0.01 --touches 200
   taxel model confusion parts --export parts.svg";
 
 /// Show which shapes one touch confuses, and the limit of any method
@@ -94,7 +93,7 @@ pub(crate) struct Confusion {
     #[arg(requires = "test", conflicts_with_all = OTHERS)]
     tolerance: Option<u32>,
     /// Use only these descriptors, such as na,p
-    #[arg(long, value_name = "KEY,...")]
+    #[arg(long, value_name = "KEY,...", conflicts_with = "noise")]
     given: Option<GivenDescriptors>,
     /// Choose descriptors one by one until none helps
     #[arg(long, conflicts_with_all = ["csv", "export"])]
@@ -130,14 +129,12 @@ pub(crate) struct Confusion {
 const MOST_DRAWN: usize = 64;
 
 /// What does not go together with `--test`.
-const OTHERS: [&str; 8] = [
+const OTHERS: [&str; 6] = [
     "given",
     "greedy",
     "classifier",
     "round",
-    "dead",
     "touches",
-    "matrix",
     "export",
 ];
 
@@ -154,7 +151,7 @@ impl Confusion {
         if let Some(each) = self.test {
             self.tested(&model, foreign, each, cx)
         } else if let Some(noise) = self.noise.noise {
-            let rates = self.noise.rates(noise, &model, &self, cx)?;
+            let rates = self.noise.rates(noise, &model, &self)?;
             self.table.give(&rates, cx)
         } else if self.greedy {
             cx.print(&self.chosen(&model))
@@ -223,7 +220,6 @@ impl Confusion {
         if !self.greedy && !is_curve {
             fits_in_table("confusion matrix", shapes)?;
         }
-        self.noise.check(&found.sensor())?;
         if self.table.export.is_some() && !is_curve && shapes > MOST_DRAWN {
             let text = format!("{shapes} shapes, and a drawing shows at most {MOST_DRAWN}");
             return Err(Failure::new(text)).named("--export");
@@ -280,7 +276,7 @@ impl Confusion {
     }
 
     /// The descriptors that are known instead of the imprint, if only some are.
-    pub(super) fn known(&self) -> Option<GivenDescriptors> {
+    fn known(&self) -> Option<GivenDescriptors> {
         let mut given = self.given.clone()?;
         given.roundings.clone_from(&self.round);
         Some(given)
