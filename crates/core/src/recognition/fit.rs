@@ -116,11 +116,10 @@ impl StartPoses {
             || Observed::new(imprint, dead),
             |margin| beyond_the_rim(imprint, dead, margin),
         );
-        let near = self.index.nearest_few(&observed, STARTS).into_iter();
+        let near = self.index.nearest(&observed, STARTS, |_| ()).into_iter();
         let placed = |PlacedKey { key, place, .. }: PlacedKey| {
             self.poses[key].iter().filter_map(move |&(number, corner)| {
                 let mut source = self.grid.source_at(self.grid.pose(number)).ok()?;
-                let place = [place.0, place.1];
                 for (side, (position, zoom)) in [
                     (Parameter::X0, Parameter::ZoomX),
                     (Parameter::Y0, Parameter::ZoomY),

@@ -62,7 +62,8 @@ struct Group {
 pub(super) struct PlacedKey {
     pub(super) distance: u32,
     pub(super) key: usize,
-    pub(super) place: (u8, u8),
+    /// The column and the row of its corner.
+    pub(super) place: [u8; 2],
 }
 
 /// Returns the number of places of a box on a matrix; 0 if it does not fit.
@@ -277,105 +278,67 @@ impl KeyIndex {
         &self.boxes
     }
 
-    /// Returns the key and place of the least distance; among equals the one whose key has the lowest `rank`, then
-    /// the first key, then the first place in reading order. None if no key fits the matrix.
+    /// Returns the `count` keys nearest to an imprint, the nearest first, each in its nearest place; among equals the
+    /// one whose key has the lowest `rank`, then the first key, then the first place in reading order.
     pub(super) fn nearest<R: Ord + Send>(
         &self,
         observed: &Observed,
+        count: usize,
         rank: impl Fn(usize) -> R + Sync,
-    ) -> Option<PlacedKey> {
-        let least = AtomicU32::new(u32::MAX);
+    ) -> Vec<PlacedKey> {
+        // No key is wanted that is farther than this.
+        let most = AtomicU32::new(u32::MAX);
         let task = |group: &Group, windows: &Windows, keys: Range<usize>| {
-            let mut best: Option<(u32, R, usize, (u8, u8))> = None;
-            let most = least.load(Ordering::Relaxed);
+            let mut near: Vec<(u32, R, usize, (u8, u8))> = Vec::new();
+            let before = most.load(Ordering::Relaxed);
+            let mut limit = before;
             let take = |key: usize, place: BoxPosition, distance: u32| {
                 let key = wide(self.numbers[key]);
                 let own = (distance, rank(key), key, (place.row, place.column));
-                if best.as_ref().is_none_or(|best| own < *best) {
-                    least.fetch_min(distance, Ordering::Relaxed);
-                    best = Some(own);
+                match near.iter().position(|(.., other, _)| *other == key) {
+                    Some(known) if near[known] <= own => return limit,
+                    Some(known) => drop(near.remove(known)),
+                    None => {}
                 }
-                distance
+                near.insert(near.partition_point(|other| *other < own), own);
+                near.truncate(count);
+                if near.len() == count {
+                    limit = near[count - 1].0;
+                    most.fetch_min(limit, Ordering::Relaxed);
+                }
+                limit
             };
-            self.compare(group, keys, windows, observed, most, take);
-            best
+            self.compare(group, keys, windows, observed, before, take);
+            near
         };
-        let better = |one, other| match (one, other) {
-            (Some(one), Some(other)) => Some(std::cmp::min(one, other)),
-            (one, other) => one.or(other),
+        let nearest = |mut one: Vec<_>, other: Vec<_>| {
+            one.extend(other);
+            one.sort_unstable();
+            // The first group is compared twice.
+            one.dedup();
+            one.truncate(count);
+            one
         };
-        // The best distance in the most promising group rules out most other groups.
-        let (of, group) = self.promising(observed)?;
+        // The best distances in the most promising group rule out most other groups.
+        let Some((of, group)) = self.promising(observed) else {
+            return Vec::new();
+        };
         let windows = Windows::new(observed, of, u32::MAX);
         let keys = group.keys.start..group.keys.end.min(group.keys.start + TASK);
         let first = task(group, &windows, keys);
-        let others = self.over(observed, &least, task, better);
-        let (distance, _, key, (row, column)) = better(first, others.flatten())?;
-        Some(PlacedKey {
+        let others = self.over(observed, &most, task, nearest);
+        let near = nearest(first, others.unwrap_or_default()).into_iter();
+        let placed = near.map(|(distance, _, key, (row, column))| PlacedKey {
             distance,
             key,
-            place: (column, row),
-        })
-    }
-
-    /// Returns the `count` keys nearest to an imprint, the nearest first, each in its first nearest place; among equals,
-    /// the first keys.
-    pub(super) fn nearest_few(&self, observed: &Observed, count: usize) -> Vec<PlacedKey> {
-        let mut near: Vec<PlacedKey> = Vec::with_capacity(count + 1);
-        let order = |own: &PlacedKey| (own.distance, own.key, own.place.1, own.place.0);
-        let mut most = u32::MAX;
-        let mut boxes: Vec<_> = self.promising_groups(observed).collect();
-        boxes.sort_by_key(|&(bound, ..)| bound);
-        for (bound, of, _) in boxes {
-            if bound > most {
-                break;
-            }
-            let windows = Windows::new(observed, of, most);
-            for group in &self.groups[of.groups.clone()] {
-                if windows.bound(observed, group.count) > Some(most) {
-                    continue;
-                }
-                let limit = most;
-                let take = |key: usize, place: BoxPosition, distance: u32| {
-                    let (key, place) = (wide(self.numbers[key]), (place.column, place.row));
-                    let own = PlacedKey {
-                        distance,
-                        key,
-                        place,
-                    };
-                    let same = near.iter().position(|other| other.key == key);
-                    match same {
-                        Some(at) if order(&near[at]) <= order(&own) => return most,
-                        Some(at) => drop(near.remove(at)),
-                        None => {}
-                    }
-                    let at = near.partition_point(|other| order(other) < order(&own));
-                    near.insert(at, own);
-                    near.truncate(count);
-                    if near.len() == count {
-                        most = near[count - 1].distance;
-                    }
-                    most
-                };
-                self.compare(group, group.keys.clone(), &windows, observed, limit, take);
-            }
-        }
-        near
+            place: [column, row],
+        });
+        placed.collect()
     }
 
     /// Returns the group of the least bound, with its box. None if no key fits the matrix.
     fn promising(&self, observed: &Observed) -> Option<(&KeyBox, &Group)> {
-        let bounds = self.promising_groups(observed);
-        let (_, of, group) = bounds.min_by_key(|&(bound, ..)| bound)?;
-        Some((of, group))
-    }
-
-    /// Iterates over the boxes that fit the matrix, each with its group of the least bound, and that bound.
-    fn promising_groups(
-        &self,
-        observed: &Observed,
-    ) -> impl Iterator<Item = (u32, &KeyBox, &Group)> {
-        self.boxes.iter().filter_map(|of| {
+        let bounds = self.boxes.iter().filter_map(|of| {
             let mut most: Option<BoxPosition> = None;
             observed.each_place((of.width, of.height), |place| {
                 let most = most.get_or_insert(place);
@@ -386,7 +349,9 @@ impl KeyIndex {
             let groups = self.groups[of.groups.clone()].iter();
             let bounds = groups.map(|group| (observed.bound(group.count, most), of, group));
             bounds.min_by_key(|&(bound, ..)| bound)
-        })
+        });
+        let (_, of, group) = bounds.min_by_key(|&(bound, ..)| bound)?;
+        Some((of, group))
     }
 
     /// Counts, for each key, its places at each distance from `least` to `most`; `take` adds the counts to a sum of
@@ -597,9 +562,10 @@ impl Model {
             return Some(nearest(key, 0, observed.seen));
         }
         let rank = |key: usize| Reverse(self.most_frequent(key).1);
-        let found = (self.scan_tables().index).nearest(observed, rank)?;
+        let found = (self.scan_tables().index).nearest(observed, 1, rank);
+        let found = found.first()?;
         let mut imprint = Imprint::empty(observed.seen.size());
-        let (column, row) = found.place;
+        let [column, row] = found.place;
         for (index, word) in self.keys().get(found.key).rows().enumerate() {
             imprint.set_word(usize::from(row) + index, word << column);
         }
