@@ -67,7 +67,7 @@ fn every_format_of_an_imprint_has_the_same_description() {
         assert_eq!(saved, said("saved as same\n"));
     }
     assert!(folder.read("a.pbm").starts_with(b"P4\n16 16\n"));
-    let stored = folder.run("--library lib library show same --json");
+    let stored = folder.run("--library lib describe same --json");
     assert_eq!(stored.stdout, expected.stdout);
     // The byte order mark that editors write before a text is not a taxel.
     folder.write("a.csv", "\u{feff}0,1\n1,1\n".as_bytes());

@@ -77,25 +77,22 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
         Some("arrow          shipped  16 × 16   74       1      0")
     );
     assert!(list.contains("\nsmile          shipped  16 × 16  102       4      1\n"));
-    let shown = shelf.does("library|show|MY RING", "");
+    let shown = shelf.does("describe|MY RING", "");
     assert!(shown.contains("\nmy ring\n4 × 3 taxels, threshold 0.5, NA 6 in all\n"));
-    let json = shelf.does("library|show|my ring|--json", "");
+    let json = shelf.does("describe|my ring|--json", "");
     assert!(json.starts_with(r##"{"imprint":[".##.","#..#",".##."],"na":6,"##));
     assert!(
         shelf
-            .does("library|show|my ring|--pitch|2", "")
+            .does("describe|my ring|--pitch|2", "")
             .contains("in mm²")
     );
     let deleted = shelf.does("library|delete|My Ring", "");
-    let restores = "deleted my ring; to restore it: taxel library restore --library ";
-    assert!(deleted.starts_with(restores), "{deleted}");
-    assert!(deleted.ends_with(" 'my ring'\n"), "{deleted}");
-    let none =
-        "no shape named \"my ring\"; to list all shapes: taxel library list --library FOLDER";
-    shelf.refuses("library|show|my ring", none);
+    let restores = "deleted my ring; 'taxel library restore' brings it back\n";
+    assert_eq!(deleted, restores);
+    let none = "no shape named \"my ring\"; 'taxel library list' shows all";
     shelf.refuses("library|delete|my ring", none);
-    let typo = "no shape named \"wahser\"; did you mean \"washer\"?";
-    shelf.refuses("library|show|wahser", typo);
+    let typo = "no stored shape or file named \"wahser\"; did you mean \"washer\"?";
+    shelf.refuses("describe|wahser", typo);
     assert_eq!(
         shelf.does("library|restore|MY RING", ""),
         "restored my ring\n"
@@ -104,12 +101,6 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
         "library|restore|my ring",
         "no shape named \"my ring\" in the trash",
     );
-    let count = taxel_files::storage::shipped::names().count() + 1;
-    assert_eq!(
-        shelf.does("library|check", ""),
-        format!("{count} shapes, all intact\n")
-    );
-    assert_eq!(shelf.does("library|check|--json", ""), "[]\n");
     let path = shelf.does("library|path", "");
     assert_eq!(path, format!("{}\n", shelf.folder.display()));
 }
@@ -123,9 +114,9 @@ fn an_existing_shape_is_only_replaced_with_force() {
     shelf.refuses(&format!("library|save|ONE|{other}"), taken);
     shelf.refuses("figure|hexagon|--save|one", taken);
     shelf.refuses("picture|washer|--save|one", taken);
-    assert!(shelf.does("library|show|one", "").contains("NA 6 in all"));
+    assert!(shelf.does("describe|one", "").contains("NA 6 in all"));
     shelf.does(&format!("library|save|ONE|{other}|--force"), "");
-    assert!(shelf.does("library|show|one", "").contains("NA 1 in all"));
+    assert!(shelf.does("describe|one", "").contains("NA 1 in all"));
     let shipped = "\"washer\" comes with taxel and cannot be replaced; choose another name";
     shelf.refuses("library|save|washer|key|--force", shipped);
     shelf.refuses("figure|hexagon|--save|washer|--force", shipped);
@@ -149,7 +140,7 @@ fn figures_are_saved_with_their_sensor_and_source() {
             && touched.contains(" in all\nsaved as mine\n"),
         "{touched}"
     );
-    let shown = shelf.does("library|show|mine", "");
+    let shown = shelf.does("describe|mine", "");
     assert!(
         shown.contains("\nmine\nhexagon side ") && shown.contains("\n20 × 16 taxels of 2.5 mm"),
         "{shown}"
@@ -160,30 +151,25 @@ fn figures_are_saved_with_their_sensor_and_source() {
         (Some(0), "saved as json\n")
     );
     assert_eq!(run.stdout.lines().count(), 1, "nothing but the answer");
-    assert_eq!(run.stdout, shelf.does("library|show|json|--json", ""));
+    assert_eq!(run.stdout, shelf.does("describe|json|--json", ""));
     // A copy has everything of the original; a file of the library can be read like any other file.
     let file = shelf.folder.join("mine.json").display().to_string();
     shelf.does(&format!("library|save|copy|{file}"), "");
-    let copied = shelf.does("library|show|copy", "");
+    let copied = shelf.does("describe|copy", "");
     assert_eq!(copied.replace("\ncopy\n", "\nmine\n"), shown);
     shelf.does("library|save|other washer|washer", "");
     assert!(
         shelf
-            .does("library|show|other washer", "")
+            .does("describe|other washer", "")
             .contains("\nellipse rx 4.00 ry 4.00 at 1.99")
     );
 }
 
 #[test]
-fn a_check_of_a_folder_that_does_not_exist_fails_and_a_list_warns() {
+fn a_list_of_a_folder_that_does_not_exist_warns() {
     let folder = tempfile::tempdir().expect("a folder");
     let missing = folder.path().join("shapes_missing").display().to_string();
     let said = format!("{missing} does not exist; it is made when a shape is saved\n");
-    for json in ["", " --json"] {
-        let run = super::taxel(&format!("library --library {missing} check{json}"), "");
-        let failed = (Some(1), String::new(), format!("error: {said}"));
-        assert_eq!((run.status, run.stdout, run.stderr), failed);
-    }
     for (form, start) in [("", "name"), (" --json", "[{")] {
         let run = super::taxel(&format!("library list{form} --library {missing}"), "");
         assert_eq!(
@@ -192,14 +178,10 @@ fn a_check_of_a_folder_that_does_not_exist_fails_and_a_list_warns() {
         );
         assert!(run.stdout.starts_with(start), "{}", run.stdout);
     }
-    // The library of the environment has no folder yet, as that of a new user.
-    let run = super::taxel("library check", "");
-    let said = "28 shapes, all intact\n".to_owned();
-    assert_eq!((run.status, run.stdout), (Some(0), said));
 }
 
 #[test]
-fn broken_shapes_are_listed_and_checked_with_the_reason() {
+fn broken_shapes_are_listed_with_the_reason() {
     let shelf = Shelf::new();
     shelf.does("library|save|good|-", RING);
     let file = |name: &str| shelf.folder.join(name);
@@ -221,32 +203,11 @@ fn broken_shapes_are_listed_and_checked_with_the_reason() {
             "MASS           own        4 × 3    6       1      1",
         ]
     );
-    let run = shelf.run("library|check", "");
-    let all = taxel_files::storage::shipped::names().count() + 3;
-    assert_eq!(
-        run.stdout.replace(&folder, "FOLDER"),
-        format!(
-            "broken: bad\u{e9}: {reason}\n\
-             name: MASS: the name inside the file is \"good\"; the name of the file counts\n\
-             other file: FOLDER/notes.txt: not a shape: its name is not NAME.json\n"
-        )
-    );
-    let message = format!("error: 1 of {all} shapes cannot be read\n");
-    assert_eq!((run.status, run.stderr), (Some(1), message));
-    let run = shelf.run("library|check|--json", "");
-    let findings: serde_json::Value = serde_json::from_str(&run.stdout).expect("JSON");
-    assert_eq!(findings[0]["finding"], "broken");
-    assert_eq!(findings[1]["finding"], "name");
-    let other = serde_json::json!({
-        "finding": "other file",
-        "path": format!("{folder}/notes.txt"),
-        "reason": "not a shape: its name is not NAME.json"
-    });
-    assert_eq!((run.status, &findings[2]), (Some(1), &other));
     let json = shelf.does("library|list|--json", "");
     assert!(json.is_ascii(), "{json}");
     let parsed: serde_json::Value = serde_json::from_str(&json).expect("JSON");
-    assert_eq!(parsed.as_array().map(Vec::len), Some(all));
+    let shipped = taxel_files::storage::shipped::names().count();
+    assert_eq!(parsed.as_array().map(Vec::len), Some(shipped + 3));
     assert_eq!(
         (&parsed[0]["name"], &parsed[0]["origin"]),
         (&"bad\u{e9}".into(), &"broken".into())
@@ -280,7 +241,7 @@ fn the_library_flag_may_stand_anywhere() {
 fn wrong_usage_exits_with_status_2() {
     misused("library", "'taxel library' requires a subcommand");
     misused(
-        "library show ../x",
+        "library delete ../x",
         "invalid value '../x' for '<NAME>': '/' cannot be in a name, only letters, digits, space, - _ .\n",
     );
     misused(

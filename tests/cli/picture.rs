@@ -6,7 +6,7 @@ use super::library::Shelf;
 fn without_flags_a_picture_is_the_shape_itself() {
     let shelf = Shelf::new();
     for name in taxel_files::storage::shipped::names() {
-        let shown = shelf.does(&format!("library|show|{name}|--json"), "");
+        let shown = shelf.does(&format!("describe|{name}|--json"), "");
         let touched = shelf.does(&format!("picture|{name}|--json"), "");
         assert_eq!(shown, touched, "{name}");
     }
@@ -64,7 +64,7 @@ fn a_picture_is_stored_and_read_from_its_file() {
     for (line, message) in [
         (
             "picture|nothing",
-            "no stored shape or file named \"nothing\"; to list all shapes: taxel library list --library FOLDER",
+            "no stored shape or file named \"nothing\"; 'taxel library list' shows all",
         ),
         (
             "picture|no/such.txt",

@@ -167,9 +167,6 @@ fn every_example_of_every_help_runs() {
         if ["library delete", "library restore", "library path"].contains(&command.as_str()) {
             in_library(folder, &["save", "ring", "washer"]);
         }
-        if command == "library show" {
-            in_library(folder, &["save", "my nut", "washer"]);
-        }
         if command == "library restore" {
             in_library(folder, &["delete", "ring"]);
         }

@@ -11,7 +11,7 @@ use std::sync::Mutex;
 
 use taxel_core::figure::FigureKind;
 use taxel_core::lock::locked;
-use taxel_core::quote::{as_argument, shortened_message};
+use taxel_core::quote::shortened_message;
 use taxel_core::recognition::NamedShape;
 use taxel_core::source::Source;
 use taxel_files::formats::file::{is_missing, without_mark};
@@ -126,24 +126,10 @@ impl Shelf {
         if name.parse::<FigureKind>().is_ok() {
             return format!("; {name:?} is a figure, which taxel figure and taxel sweep take");
         }
-        let similar = self.readable().suggestion(error);
-        match self.library_command("list") {
-            Some(list) if similar.is_empty() => format!("; to list all shapes: {list}"),
-            _ => similar,
+        match self.readable().suggestion(error) {
+            none if none.is_empty() => "; 'taxel library list' shows all".to_owned(),
+            similar => similar,
         }
-    }
-
-    /// Returns the words `taxel library` with a command, and with the folder if `--library` names it; None if the
-    /// folder's path is not UTF-8.
-    pub(crate) fn library_command(&self, command: &str) -> Option<String> {
-        let words = format!("taxel library {command}");
-        let Some(folder) = self.folder.as_ref().filter(|_| self.asked) else {
-            return Some(words);
-        };
-        let folder = folder.to_str()?;
-        // Otherwise a folder with a dash would be taken for a flag.
-        let sign = if folder.starts_with('-') { '=' } else { ' ' };
-        Some(format!("{words} --library{sign}{}", as_argument(folder)))
     }
 
     pub(crate) fn source(&self, name: &str) -> Result<Source, LibraryError> {

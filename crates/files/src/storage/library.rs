@@ -16,7 +16,7 @@ use crate::formats::name::{Name, folded};
 use crate::formats::shape::{MAX_BYTES, StoredShape};
 use crate::storage::error::{FileError, LibraryError};
 use crate::storage::file::{self, Existing, make_folder, open, paths_in, sync_folder, wrong};
-use crate::storage::{models, shipped};
+use crate::storage::shipped;
 
 const TRASH: &str = ".trash";
 
@@ -66,8 +66,6 @@ pub struct LibraryEntry {
 pub struct LoadedShape {
     /// The shape, under the name of its file.
     pub shape: StoredShape,
-    /// The name inside the file; it differs from the file's own name if the file was renamed or copied by hand.
-    pub written_name: Name,
     /// A hash of the file's content.
     pub stamp: u64,
     /// Where it comes from.
@@ -192,7 +190,6 @@ impl Library {
         let refuse = |error| LibraryError::Refused(wrong(&self.path(&file), error).message);
         let shape = StoredShape::read(&content).map_err(refuse)?;
         Ok(LoadedShape {
-            written_name: shape.name.clone(),
             // A file that was renamed by hand goes by its new name.
             shape: shape.renamed(Name::new(&file)?),
             stamp: xxh3_64(&content),
@@ -399,20 +396,6 @@ impl Library {
             _ => return String::new(),
         };
         did_you_mean(name, known.iter().map(String::as_str))
-    }
-
-    /// Lists what is in the folder and is neither a shape nor one of the library's own files, by path. None of it is
-    /// harmful.
-    ///
-    /// # Errors
-    /// If the folder exists but cannot be read.
-    pub fn foreign_files(&self) -> Result<Vec<PathBuf>, LibraryError> {
-        let mut foreign = paths_in(&self.folder)?;
-        foreign.retain(|path| {
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            !name.starts_with('.') && name != models::FOLDER && name_of(path).is_none()
-        });
-        Ok(foreign)
     }
 }
 
