@@ -15,7 +15,7 @@
 //! | 0 | done |
 //! | 1 | the input was wrong: a file, a shape, a line of a batch, a size, place, sensor or threshold out of range |
 //! | 2 | the command, the settings or the script was wrong: an unknown flag, a value that a flag cannot take |
-//! | 3 | the program ended before its script did; an answer is not the expected one |
+//! | 3 | the program ended before its script did |
 //! | 128 + n | signal n ended the command |
 //!
 //! A closed pipe, as in `taxel batch | head -1`, is not an error: the program stops and returns 0. Escape codes are

@@ -6,7 +6,6 @@
 
 use std::ffi::OsString;
 use std::io::{self, BufRead, BufReader, Cursor, Read};
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
@@ -14,12 +13,9 @@ use serde_json::value::RawValue;
 use taxel_core::imprint::Imprint;
 use taxel_core::index::wide;
 use taxel_core::progress::ToTheEnd;
-use taxel_core::quote::did_you_mean;
-use taxel_core::recognition::{Answer, AnswerState, Model, Noise, NoiseError};
+use taxel_core::recognition::{Answer, Model, Noise, NoiseError};
 use taxel_files::ReadError;
 use taxel_files::formats::file::without_mark;
-use taxel_files::formats::job::{FrameRows, RuleRecord};
-use taxel_files::formats::value::counted;
 use taxel_files::formats::{Content, json};
 use taxel_files::memory::MemoryGuard;
 use taxel_files::storage::FoundModel;
@@ -38,8 +34,6 @@ use crate::naming::Terms;
 const EXAMPLES: &str = r#"Reads an imprint in any format that 'taxel describe' reads, or lines of JSON:
   {"imprint":["..##",...]}              one touch
   {"touches":[[...],[...]]}             several touches of one shape
-  {"frame":[[0,12],...],"at_least":10}  a sensor's values, and a threshold as
-                                        for 'taxel batch'
 Each line gets one line as its answer, with a copy of the line's frame number,
 label, time and channel; other keys are ignored.
 
@@ -50,9 +44,6 @@ a fit is that of 'taxel figure' and 'taxel picture': x0, y0, angle. An imprint
 at the rim may be cut off, so it is never 'certain'. With --noise 0, nothing is
 fitted: the answer is a shape that leaves just this imprint in a trained pose.
 
-With --expect, the exit status is 3 if the answer is another shape, or is tied,
-rejected or unknown; if some lines cannot be answered, it is 1.
-
 Built-in models: 'library', all shapes of the library; 'shapes', those that come
 with taxel; 'figures', the seven figures at their default sizes; 'figures-30',
 the same figures at about 30 cells each.
@@ -61,7 +52,6 @@ Examples:
   taxel recognise touch.txt --model figures-30 --pose
   taxel recognise washer --model shipped.npz --top 3
   taxel batch < poses.jsonl | taxel recognise - --model parts
-  taxel recognise imprint.txt --model parts --expect disc --reject 0.9
   taxel recognise imprint.txt --model parts --noise 0.02 --mask dead.txt"#;
 
 /// Name the shape that left an imprint
@@ -80,9 +70,6 @@ pub(crate) struct Recognise {
     /// Reject answers less probable than P (0 to 1)
     #[arg(long, value_name = "P", value_parser = parse_probability)]
     reject: Option<f64>,
-    /// Exit with status 3 if this is not the answer
-    #[arg(long, value_name = "NAME")]
-    expect: Option<String>,
     #[command(flatten)]
     terms: TermsFlags,
     /// Imprint whose active taxels are dead, stuck on or off
@@ -271,15 +258,6 @@ impl Recognise {
         let mask = self.mask.as_ref().map(|mask| cx.shelf.find(mask));
         let mask = mask.transpose().map_err(|error| error.of_flag("--mask"))?;
         let input = self.input(cx)?;
-        let names = || found.shapes().iter().map(|shape| &*shape.name);
-        if let Some(expected) = &self.expect
-            && !names().any(|name| name == expected)
-        {
-            let shapes = names().collect::<Vec<_>>().join(", ");
-            let near = did_you_mean(expected, names());
-            let text = format!("the model has no shape named {expected:?}; its shapes are ");
-            return Err(Failure::new(text + &shapes + &near)).named("--expect");
-        }
         let namer = Namer {
             top: self.top.map(wide),
             asks_pose: self.pose,
@@ -338,57 +316,21 @@ impl Recognise {
             json::ascii(&named) + "\n"
         } else {
             named.text(touch)
-        })?;
-        if self.is_expected(&named) {
-            return Ok(());
-        }
-        let shapes = match named.answer.state {
-            AnswerState::Tied => &named.answer.tied[..],
-            _ => named.answer.shape.as_slice(),
-        };
-        let names = shapes.iter().map(|&own| format!("{:?}", named.name(own)));
-        let names = names.collect::<Vec<_>>().join(" or ");
-        let found = if names.is_empty() { "no shape" } else { &names };
-        let state = named.answer.state.name();
-        Err(self.unexpected(&format!("{found} ({state})")))
+        })
     }
 
     fn answer_lines(&self, input: Input, namer: &Namer) -> Result<(), Failure> {
-        let (all, others) = (AtomicU64::new(0), AtomicU64::new(0));
         let answer = |line: &[u8], text: &mut Vec<u8>| -> Result<(), Failure> {
             let (touches, copied) = read_line(line)?;
             let mut named = namer.checked_answer(&touches)?;
             named.copied = copied;
-            all.fetch_add(1, Ordering::Relaxed);
-            let is_other = !self.is_expected(&named);
-            others.fetch_add(is_other.into(), Ordering::Relaxed);
             json::extend_ascii(text, &named);
             Ok(())
         };
         let jobs = self.jobs.map_or(0, usize::from);
         lines::answer_all(jobs, input, io::stdout().lock(), "touch", || {
             |line: &[u8], text: &mut Vec<u8>| answer(line, text).map_err(|failure| failure.text)
-        })?;
-        let (all, others) = (counted(all.into_inner(), "line"), others.into_inner());
-        match others {
-            0 => Ok(()),
-            _ => Err(self.unexpected(&format!("another answer or none for {others} of {all}"))),
-        }
-    }
-
-    fn is_expected(&self, named: &Recognition<'_>) -> bool {
-        let Some(expected) = &self.expect else {
-            return true;
-        };
-        let answer = &named.answer;
-        let name = answer.shape.map(|shape| named.name(shape));
-        answer.state != AnswerState::Tied && name == Some(expected)
-    }
-
-    fn unexpected(&self, found: &str) -> Failure {
-        let expected = self.expect.as_deref().unwrap_or_default();
-        let text = format!("--expect: expected {expected:?}, found {found}");
-        Failure::new(text).with_status(3)
+        })
     }
 }
 
@@ -413,10 +355,10 @@ fn is_line(start: &[u8]) -> bool {
         }
 }
 
-const ONE_KEY: &str = "expected exactly one of the keys frame (with values), imprint (not null: set a threshold where the frame is read, such as --at-least), touches";
+const ONE_KEY: &str = "expected exactly one of the keys imprint (not null: set a threshold where the frame is read, such as --at-least) and touches";
 
 #[derive(Deserialize)]
-#[serde(expecting = "an object with an imprint, touches or a frame")]
+#[serde(expecting = "an object with an imprint or touches")]
 struct LineKeys {
     imprint: Option<Imprint>,
     touches: Option<Vec<Imprint>>,
@@ -443,28 +385,14 @@ type Copied = (&'static str, Box<RawValue>);
 /// given as they are.
 fn read_line(line: &[u8]) -> Result<(Vec<Imprint>, Vec<Copied>), ReadError> {
     let keys: LineKeys = json::of_line_with_nan(line)?;
-    let line = &*json::without_nan(line);
-    // A frame is its values or its number.
-    let (values, number) = match keys.frame {
-        Some(frame) if frame.get().starts_with('[') => (Some(frame), None),
-        number => (None, number),
-    };
-    let touches = match (values, keys.imprint, keys.touches) {
-        (Some(values), None, None) => {
-            let rows: FrameRows = serde_json::from_str(values.get())
-                .map_err(|error| ReadError::new(json::message(&error)).of_key("frame"))?;
-            let rule: RuleRecord = json::of_line(line)?;
-            vec![rule.imprint(&rows)?]
-        }
-        (None, Some(imprint), None) => vec![imprint],
-        (None, None, Some(touches)) if !touches.is_empty() => touches,
-        (None, None, Some(_)) => {
-            return Err(ReadError::new("touches: empty, expected at least one"));
-        }
+    let touches = match (keys.imprint, keys.touches) {
+        (Some(imprint), None) => vec![imprint],
+        (None, Some(touches)) if !touches.is_empty() => touches,
+        (None, Some(_)) => return Err(ReadError::new("touches: empty, expected at least one")),
         _ => return Err(ReadError::new(ONE_KEY)),
     };
     let copied = [
-        ("frame", number),
+        ("frame", keys.frame),
         ("label", keys.label),
         ("time", keys.time),
         ("channel", keys.channel),
