@@ -307,12 +307,8 @@ fn a_pose_is_given_in_cells_degrees_and_mm() {
         "{\"name\":\"bar\",\"figure\":\"rectangle\",\"length\":6,\"width\":3}\n",
     );
     place.done("model train b.jsonl --positions 2 --angle 0:345:15 --out b.npz");
-    let touched = place.done(
-        "figure rectangle --length 6 --width 3 --x0 5 --y0 5 --angle 30 --json",
-    );
-    let text = place
-        .run("recognise - --model b.npz --pose", &touched)
-        .stdout;
+    place.done("figure rectangle --length 6 --width 3 --x0 5 --y0 5 --angle 30 --export touch.txt");
+    let text = place.done("recognise touch.txt --model b.npz --pose");
     let said = "centre 8.00 ± 0.00, 6.50 ± 0.00 cells\n\
                 angle 30° ± 0° (repeats every 180°); 95 % of 2 poses: 30°\n";
     assert!(text.contains(said), "{text}");
