@@ -25,9 +25,7 @@ pub(crate) fn descriptors() -> String {
 pub(crate) fn keys() -> String {
     let places = [
         Context::Matrix,
-        Context::Hold,
         Context::Form,
-        Context::List,
         Context::Explore,
         Context::Imprints,
         Context::Map,
