@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::{Run, misused, sh, taxel};
+use super::{Run, misused, taxel};
 
 /// Returns the path of a sample from the tests of recordings.
 fn sample(name: &str) -> String {
@@ -438,18 +438,6 @@ fn flags_out_of_range_or_without_effect_are_refused() {
 }
 
 /// The input has no end, so an error at its beginning must be enough.
-#[test]
-fn an_endless_input_is_refused_at_once() {
-    let script = "yes 'no recording' | timeout 5 \"$0\" frames -";
-    let run = sh(script).output().expect("started");
-    let said = String::from_utf8_lossy(&run.stderr).into_owned();
-    assert_eq!(run.status.code(), Some(1), "{said}");
-    assert!(
-        said.contains("error: standard input: not a recording"),
-        "{said}"
-    );
-}
-
 #[test]
 fn frames_without_values_have_no_peak() {
     let none = "{\"frame\":[[null,null]]}\n".repeat(3);

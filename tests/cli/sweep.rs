@@ -229,7 +229,7 @@ fn shards_that_do_not_belong_together_are_refused() {
         ),
         (
             format!("{one} {out} --atlas {no}"),
-            format!("{out}: shard 1/1, but {one} is shard 1/2: not the same study"),
+            format!("{out}: shard 1/1 differs from the first one in the number of shards"),
         ),
         (
             format!("{one} --atlas {no}"),

@@ -93,8 +93,8 @@ impl Merge {
         Ok(())
     }
 
-    /// Returns the shards in their order, and whether they are models. What is wrong with them is said before hours of
-    /// reading; the merge itself refuses the rest.
+    /// Returns the shards in their order, and whether they are models. All that are missing are named before hours of
+    /// reading; the merge refuses the rest.
     fn parts(&self) -> Result<(Vec<&Path>, bool), Failure> {
         let mut parts = Vec::new();
         let mut is_model = false;
@@ -111,24 +111,15 @@ impl Merge {
             parts.push((shard, path.as_path()));
         }
         parts.sort_by_key(|(shard, _)| shard.number());
-        let (first, place) = parts[0];
-        if let Some((shard, path)) = parts.iter().find(|(shard, _)| shard.of() != first.of()) {
-            let place = place.display();
-            let text = format!("shard {shard}, but {place} is shard {first}: not the same study");
-            return Err(Failure::new(text)).named(path.display());
-        }
+        let of = parts[0].0.of();
         let given: HashSet<u32> = parts.iter().map(|(shard, _)| shard.number()).collect();
-        let missing = (1..=first.of()).filter(|number| !given.contains(number));
-        let mut missing: Vec<String> = missing.map(|number| number.to_string()).collect();
+        let missing = (1..=of).filter(|number| !given.contains(number));
+        let missing: Vec<String> = missing.map(|number| number.to_string()).collect();
         // The merge refuses one that is given twice.
         if missing.is_empty() || given.len() < parts.len() {
             return Ok((parts.into_iter().map(|(_, path)| path).collect(), is_model));
         }
-        let (count, of) = (missing.len(), first.of());
-        if count > MOST_LISTED {
-            missing.truncate(MOST_LISTED);
-            missing.push("…".to_owned());
-        }
+        let count = missing.len();
         let are = if count == 1 { "is" } else { "are" };
         let missing = missing.join(", ");
         Err(Failure::new(format!(
@@ -136,5 +127,3 @@ impl Merge {
         )))
     }
 }
-
-const MOST_LISTED: usize = 10;

@@ -145,7 +145,6 @@ fn watch(request: &WatchRequest, naming: &NamingFlags, cx: &Context) -> Result<(
         channels: ChannelChoice::new(request.options.channel.as_deref()),
         names: Vec::new(),
         has_frame: false,
-        held: None,
         pipeline: request.pipeline.clone(),
         waiting: Vec::new(),
         may_give_up: source.arrives(request.options.playback) && recording.is_some(),
@@ -229,9 +228,6 @@ struct Watcher<'a> {
     /// The names of all channels.
     names: Vec<Option<String>>,
     has_frame: bool,
-    /// The first frame of a recording, if no channel is named: a second channel before the next frame is an error, a
-    /// later one is left out.
-    held: Option<(Frame, Option<f64>)>,
     pipeline: Pipeline,
     /// The frames that wait for the tare.
     waiting: Vec<Frame>,
@@ -292,25 +288,13 @@ impl Watcher<'_> {
     fn add_channel(&mut self, info: &ChannelInfo) -> Result<(), Failure> {
         self.names.push(info.name.clone());
         let is_chosen = self.channels.add(info);
-        let names = &self.channels.names;
-        if self.request.options.channel.is_none() && names.len() > 1 {
-            if self.has_frame && self.held.is_none() {
-                let (own, other) = (&names[0], info.shown_name());
-                let flag = as_argument(other);
-                self.say(format!(
-                    "channel {other} is left out, since {own} came first; --channel {flag} takes it"
-                ));
-                return Ok(());
-            }
-            let all = match &self.request.source {
-                FrameSource::File(path) => {
-                    let options = self.request.options.of_recording();
-                    RecordingFile::open(path, options)?.channel_names(None).0
-                }
-                _ => names.clone(),
-            };
-            let why = "several channels, choose one with --channel";
-            return Err(self.refused(format!("{why}: {}", all.join(", "))));
+        if let (None, [first, .., other]) =
+            (&self.request.options.channel, &self.channels.names[..])
+        {
+            let flag = as_argument(other);
+            self.say(format!(
+                "channel {other} is left out, since {first} came first; --channel {flag} takes it"
+            ));
         }
         if !is_chosen {
             return Ok(());
@@ -335,27 +319,14 @@ impl Watcher<'_> {
             return Ok(());
         }
         if !std::mem::replace(&mut self.has_frame, true) {
-            match &self.request.options.channel {
-                None if !self.names.is_empty() => {
-                    self.held = Some((frame.clone(), time));
-                    return Ok(());
-                }
-                Some(wanted) if self.names.is_empty() => self.say(format!(
+            if let Some(wanted) = &self.request.options.channel
+                && self.names.is_empty()
+            {
+                self.say(format!(
                     "no channel named {wanted:?}: a stream has none, and all frames are taken"
-                )),
-                _ => {}
+                ));
             }
         }
-        self.release()?;
-        self.take(frame, time)
-    }
-
-    fn release(&mut self) -> Result<(), Failure> {
-        let held = self.held.take();
-        held.map_or(Ok(()), |(frame, time)| self.take(&frame, time))
-    }
-
-    fn take(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), Failure> {
         self.record(|recorder| recorder.add(frame, time))?;
         let mut frame = frame.clone();
         frame.time = time;
@@ -493,15 +464,7 @@ impl Watcher<'_> {
             .is_none()
             .then_some("; check --rows, --columns and --format");
         let advice = advice.unwrap_or_default();
-        Err(self.refused(format!("{why}{advice}{}", self.format_advice())))
-    }
-
-    fn format_advice(&self) -> String {
-        let format = self.request.options.stream_format;
-        format.map_or_else(String::new, |format| {
-            let name = format.stream.unwrap_or(format.name);
-            format!("; the settings say format {name:?}, which --format overrides")
-        })
+        Err(self.refused(format!("{why}{advice}")))
     }
 
     /// The failure that ended the source. If a stream cannot be decoded without more flags, it says which of them
@@ -513,21 +476,20 @@ impl Watcher<'_> {
             (ReadErrorKind::Unsized, _) => "; give --rows and --columns",
             _ => return damaged(&self.name, error),
         };
-        self.refused(format!("{error}{advice}{}", self.format_advice()))
+        self.refused(format!("{error}{advice}"))
     }
 
     /// Ends recording and answers. Returns the first error in this order: of recording, of writing answers, of the
     /// frames, of the source.
     fn finish(
         mut self,
-        failed: Option<Failure>,
+        mut failed: Option<Failure>,
         acquired: Result<(), ReadError>,
         stopped: bool,
     ) -> Result<(), Failure> {
         let ended_well = acquired.is_ok() && !stopped;
         let is_unreadable =
             (acquired.as_ref()).is_err_and(|error| matches!(error.kind, ReadErrorKind::Io(_)));
-        let mut failed = failed.or_else(|| self.release().err());
         let damage = acquired.err().map(|error| self.damage(&error));
         if let (Some(failure), Some(recording)) =
             (failed.as_ref().or(damage.as_ref()), &self.recording)

@@ -4,7 +4,6 @@
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use taxel_files::ReadError;
 use taxel_files::formats::imprint_file::MAX_BYTES;
@@ -26,19 +25,10 @@ pub(crate) fn input_name(path: &Path) -> String {
 /// Opens a file, or standard input for `-`.
 pub(crate) fn open(path: &Path) -> io::Result<Box<dyn Read>> {
     Ok(if path.as_os_str() == "-" {
-        Box::new(standard()?)
+        Box::new(io::stdin())
     } else {
         Box::new(File::open(path)?)
     })
-}
-
-/// Returns standard input, but only once: a second reader would find only its end, and take it for an empty input.
-pub(crate) fn standard() -> io::Result<io::Stdin> {
-    static IS_TAKEN: AtomicBool = AtomicBool::new(false);
-    if IS_TAKEN.swap(true, Ordering::Relaxed) {
-        return Err(io::Error::other("it can be read only once"));
-    }
-    Ok(io::stdin())
 }
 
 /// An open file or standard input.

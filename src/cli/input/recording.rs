@@ -1,12 +1,11 @@
-//! Opens recordings: files, or standard input; a pipe is copied to a temporary file because a recording is read
+//! Opens recordings: files, or standard input; a pipe is first copied to a temporary file because a recording is read
 //! several times.
 
 use std::fmt::Display;
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io::{self, Read, Seek};
 use std::ops::ControlFlow;
 use std::os::fd::AsFd;
-use std::os::unix::fs::FileExt;
 use std::path::Path;
 
 use taxel_core::frame::{Frame, View};
@@ -16,7 +15,6 @@ use taxel_core::progress::stop_if;
 use taxel_core::quote::shortened_message;
 use taxel_core::sensor::MatrixSize;
 use taxel_files::acquire::metadata_beside;
-use taxel_files::formats::file::system_reason;
 use taxel_files::formats::recording::{
     Format, ReadOptions, RecordingEvent, RecordingMetadata, RecordingNote, format_of, read,
     read_rows,
@@ -24,14 +22,14 @@ use taxel_files::formats::recording::{
 use taxel_files::{ReadError, ReadErrorKind};
 
 use crate::cli::failure::{Failure, Named};
-use crate::cli::input::content::{self, Input, input_name};
+use crate::cli::input::content::{Input, input_name};
 
 /// The most bytes that are read of a table. A table of 64 × 64 factors is much smaller.
 const LARGEST_TABLE: u64 = 1 << 20;
 
 pub(crate) struct RecordingFile {
     pub(crate) name: String,
-    file: Box<dyn ReadAgain>,
+    file: File,
     options: ReadOptions,
     metadata: Option<RecordingMetadata>,
     /// What is wrong with the metadata beside it.
@@ -153,103 +151,28 @@ fn unended(path: &Path, metadata: &RecordingMetadata) -> Option<String> {
     Some(format!("{beside}: the recording ended early: {reason}"))
 }
 
-trait ReadAgain: Read + Seek {}
-
-impl<T: Read + Seek> ReadAgain for T {}
-
-fn opened(path: &Path) -> io::Result<Box<dyn ReadAgain>> {
-    let (file, rest): (File, Box<dyn Read>) = if path.as_os_str() == "-" {
-        let input = content::standard()?;
-        let file = input.as_fd().try_clone_to_owned()?;
-        (file.into(), Box::new(input))
+fn opened(path: &Path) -> io::Result<File> {
+    let mut file: File = if path.as_os_str() == "-" {
+        io::stdin().as_fd().try_clone_to_owned()?.into()
     } else {
-        let file = File::open(path)?;
-        (file.try_clone()?, Box::new(file))
+        File::open(path)?
     };
     let kind = file.metadata()?;
     // A file is read again from its beginning, so that must be where the shell has it. A pipe cannot be read twice.
-    if kind.is_dir() || kind.is_file() && (&file).stream_position()? == 0 {
-        return Ok(Box::new(file));
+    if kind.is_dir() || kind.is_file() && file.stream_position()? == 0 {
+        return Ok(file);
     }
-    Ok(Box::new(SpooledInput::new(rest)?))
+    let mut copy = tempfile::tempfile()?;
+    if io::copy(&mut file.take(MOST + 1), &mut copy)? > MOST {
+        let text = "more than 4 GiB; use taxel watch for endless input";
+        return Err(io::Error::other(text));
+    }
+    copy.rewind()?;
+    Ok(copy)
 }
 
 /// The most that is copied, in bytes, so that an endless input does not fill the disk.
 const MOST: u64 = 4 << 30;
-
-/// Input with a copy of what was read of it. No more is read than requested, so an endless input is refused as soon as
-/// its beginning is wrong.
-struct SpooledInput {
-    rest: Box<dyn Read>,
-    copy: File,
-    /// The length of the copy and the position at which reading continues, in bytes.
-    length: u64,
-    place: u64,
-    most: u64,
-}
-
-impl SpooledInput {
-    fn new(rest: Box<dyn Read>) -> io::Result<Self> {
-        Ok(Self {
-            rest,
-            copy: tempfile::tempfile().map_err(|error| not_copied(&error))?,
-            length: 0,
-            place: 0,
-            most: MOST,
-        })
-    }
-
-    fn advance(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        let count = self.rest.read(bytes)?;
-        let copied = self.copy.write_all_at(&bytes[..count], self.length);
-        copied.map_err(|error| not_copied(&error))?;
-        self.length += count as u64;
-        if self.length > self.most {
-            return Err(io::Error::other(
-                "more than 4 GiB; save it to a file and read that, or use taxel watch for endless input",
-            ));
-        }
-        Ok(count)
-    }
-}
-
-fn not_copied(error: &io::Error) -> io::Error {
-    let (folder, reason) = (std::env::temp_dir(), system_reason(error));
-    let folder = folder.display();
-    let text = format!("cannot keep a copy in {folder} (TMPDIR): {reason}");
-    io::Error::new(error.kind(), text)
-}
-
-impl Read for SpooledInput {
-    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        let count = if self.place < self.length {
-            self.copy.read_at(bytes, self.place)?
-        } else {
-            self.advance(bytes)?
-        };
-        self.place += count as u64;
-        Ok(count)
-    }
-}
-
-impl Seek for SpooledInput {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        let present = self.place;
-        let mut bytes = vec![0; 1 << 16];
-        loop {
-            let place = match to {
-                SeekFrom::Start(place) => Some(place),
-                SeekFrom::Current(by) => present.checked_add_signed(by),
-                SeekFrom::End(by) => self.length.checked_add_signed(by),
-            };
-            let is_beyond = matches!(to, SeekFrom::End(_)) || place > Some(self.length);
-            if !is_beyond || self.advance(&mut bytes)? == 0 {
-                self.place = place.ok_or(io::ErrorKind::InvalidInput)?;
-                return Ok(self.place);
-            }
-        }
-    }
-}
 
 /// The cells without a value: the active taxels of an imprint.
 pub(crate) fn dead_cells(path: &Path) -> Result<Imprint, Failure> {
@@ -347,27 +270,5 @@ mod tests {
                             {\"channel\":\"a\",\"frame\":[[3]]}\n{\"channel\":\"a\",\"frame\":[[4]]}\nx\n";
         let failed = Err("fatal".to_owned());
         assert_eq!(taken(two_channels, false, 3.0), (vec![1.0, 3.0], failed));
-    }
-
-    #[test]
-    fn piped_input_can_be_read_again_from_any_place() {
-        let pieces = (&b"abc"[..]).chain(&b"defg"[..]).chain(&b"hij"[..]);
-        let mut input = SpooledInput::new(Box::new(pieces)).expect("a file");
-        let mut read = |to: SeekFrom, count: usize| {
-            let place = input.seek(to).expect("sought");
-            let mut bytes = vec![0; count];
-            input.read_exact(&mut bytes).expect("read");
-            (place, String::from_utf8(bytes).expect("text"), input.length)
-        };
-        let start = SeekFrom::Start(0);
-        assert_eq!(read(start, 2), (0, "ab".to_owned(), 2));
-        assert_eq!(read(start, 4), (0, "abcd".to_owned(), 4));
-        assert_eq!(read(SeekFrom::Current(-1), 2), (3, "de".to_owned(), 5));
-        assert_eq!(read(SeekFrom::Start(8), 1), (8, "i".to_owned(), 10));
-        assert_eq!(read(SeekFrom::End(-3), 3), (7, "hij".to_owned(), 10));
-        let mut endless = SpooledInput::new(Box::new(io::repeat(b'1'))).expect("a file");
-        endless.most = 1 << 20;
-        let copied = io::copy(&mut endless, &mut io::sink());
-        assert!(copied.is_err_and(|error| error.to_string().contains("more than 4 GiB")));
     }
 }

@@ -5,7 +5,6 @@
 
 use std::collections::HashMap;
 use std::ffi::OsStr;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -104,10 +103,6 @@ impl Shelf {
     /// Returns the message about an error of the library, with a similar name, or where to look, for an unknown one.
     pub(crate) fn refused(&self, error: LibraryError) -> Failure {
         match &error {
-            LibraryError::System(own) if own.error.kind() == ErrorKind::ReadOnlyFilesystem => {
-                let folder = self.folder.as_ref().unwrap_or(&own.path);
-                Failure::new(format!("{}: the library is read-only", folder.display()))
-            }
             LibraryError::NoPlace => Failure::from(error)
                 .with_hint("; name a folder with --library DIR or TAXEL_LIBRARY"),
             _ => {
@@ -233,19 +228,7 @@ fn set_of_lines(
 
 #[cfg(test)]
 mod tests {
-    use taxel_files::storage::FileError;
-
     use super::*;
-
-    /// The lock or the temporary file is the first that cannot be written, but does not matter to the user.
-    #[test]
-    fn a_read_only_library_is_called_so() {
-        let shelf = Shelf::default();
-        let (doing, lock) = ("open the lock", Path::new("ro/.lock"));
-        let refused = FileError::cannot(doing, lock)(ErrorKind::ReadOnlyFilesystem.into());
-        let said = shelf.refused(refused.into()).text;
-        assert!(said.ends_with(": the library is read-only"), "{said}");
-    }
 
     #[test]
     fn shipped_shapes_need_no_folder() {
