@@ -32,7 +32,7 @@ use crate::cli::arguments::flags::whole;
 use crate::cli::arguments::parameters::PitchFlag;
 use crate::cli::commands::frame_flags::FrameFlags;
 use crate::cli::commands::recognise::{FoundNamer, Namer, NamingFlags};
-use crate::cli::input::recording::{RecordingFile, damaged, noted, refused};
+use crate::cli::input::recording::{RecordingFile, damaged, refused};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::report;
 use crate::cli::output::table::Record;
@@ -478,7 +478,7 @@ impl Answering<'_> {
     /// Warns of what is odd in the recording, and of rows and columns that it states otherwise than the flags.
     fn remark(&self, scan: &Scan, wanted: Option<&str>) {
         for note in scan.notes.iter().take(MOST_WARNINGS) {
-            self.warn(noted(note));
+            self.warn(note);
         }
         if let more @ 1.. = scan.notes.len().saturating_sub(MOST_WARNINGS) {
             self.warn(format!("{more} more of these"));

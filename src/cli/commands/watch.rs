@@ -43,7 +43,7 @@ use crate::cli::commands::frame_flags::WatchFlags;
 use crate::cli::commands::model;
 use crate::cli::commands::recognise::{FoundNamer, Namer, NamingFlags};
 use crate::cli::commands::screen::{self, Look};
-use crate::cli::input::recording::{RecordingFile, damaged, noted, refused};
+use crate::cli::input::recording::{RecordingFile, damaged, refused};
 use crate::cli::signals::Signals;
 use crate::cli::{Context, Failure, Named};
 use crate::frames::recording::Recording;
@@ -279,7 +279,7 @@ impl Watcher<'_> {
             AcquireEvent::Silent { reason, .. } => self.say(reason),
             AcquireEvent::Lost(error) => self.say(AcquireEvent::lost(error)),
             AcquireEvent::Back { gap } => self.say(AcquireEvent::back_after(gap)),
-            AcquireEvent::Note(note) if !note.is_plain() => self.warn(noted(note)),
+            AcquireEvent::Note(note) if !note.is_plain() => self.warn(note),
             _ => {}
         }
         Ok(())

@@ -16,8 +16,7 @@ use taxel_core::quote::shortened_message;
 use taxel_core::sensor::MatrixSize;
 use taxel_files::acquire::metadata_beside;
 use taxel_files::formats::recording::{
-    Format, ReadOptions, RecordingEvent, RecordingMetadata, RecordingNote, format_of, read,
-    read_rows,
+    Format, ReadOptions, RecordingEvent, RecordingMetadata, format_of, read, read_rows,
 };
 use taxel_files::{ReadError, ReadErrorKind};
 
@@ -128,14 +127,6 @@ pub(crate) fn damaged(name: &str, error: &ReadError) -> Failure {
     match error.kind {
         ReadErrorKind::Unsized => failure.with_hint("; give --rows and --columns"),
         _ => failure,
-    }
-}
-
-/// A note about a recording, and what helps.
-pub(crate) fn noted(note: &RecordingNote) -> String {
-    match note {
-        RecordingNote::Flat(_) => format!("{note}; if so, give --rows and --columns"),
-        note => note.to_string(),
     }
 }
 

@@ -361,22 +361,3 @@ fn an_axis_for_a_single_channel_is_not_the_axis_of_frames() {
             .is_some()
     );
 }
-
-#[test]
-fn an_array_of_two_axes_that_is_larger_than_any_frame_has_a_note() {
-    let notes = |shape: &str, count: usize, asked| {
-        let found = recorded(&array(shape, false, &vec![0.0; count]), asked);
-        let notes: Vec<String> = found.notes.iter().map(ToString::to_string).collect();
-        (found.frames.len(), notes)
-    };
-    let note = "an array of 300 × 256, taken as one frame, though each of its 300 rows may be a frame of 256 values";
-    assert_eq!(
-        notes("(300, 256)", 300 * 256, None),
-        (1, vec![note.to_owned()])
-    );
-    assert_eq!(
-        notes("(300, 256)", 300 * 256, Some((16, 16))),
-        (300, vec![])
-    );
-    assert_eq!(notes("(64, 64)", 64 * 64, None), (1, vec![]));
-}

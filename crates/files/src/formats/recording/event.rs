@@ -203,8 +203,6 @@ pub enum RecordingNote {
     Reading(String),
     /// An oddity that does not stop a reader.
     Oddity(String),
-    /// An oddity that the rows and columns of a frame would settle: an array that may be one frame, or many.
-    Flat(String),
 }
 
 impl RecordingNote {
@@ -223,7 +221,7 @@ impl RecordingNote {
 
 impl fmt::Display for RecordingNote {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (Self::Reading(text) | Self::Oddity(text) | Self::Flat(text)) = self;
+        let (Self::Reading(text) | Self::Oddity(text)) = self;
         f.write_str(text)
     }
 }

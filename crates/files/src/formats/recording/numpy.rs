@@ -11,9 +11,9 @@
 //! | (records) | a frame a record: fields of two axes are channels, or fields of a number each are its cells; others its time and label |
 //!
 //! Of an archive, each array of two or three axes is a channel, and an array of one axis named `t…` or `time…` gives the
-//! times of the channels with as many frames. Times are in the unit of their name (`time_ms`), of their type (datetime64
-//! and timedelta64 of numpy) or of their size, and count from the first one. Whole nanoseconds since 1970 keep all
-//! their digits.
+//! times of the channels with as many frames. Times are in the unit of their name (`time_ms`) or of their type (datetime64
+//! and timedelta64 of numpy), else in seconds, and count from the first one. Whole nanoseconds since 1970 keep all their
+//! digits.
 //!
 //! A file must have exactly the bytes that its header requires. Only taxel's own recordings, records of `time`, `number`
 //! and `values`, may end anywhere, since the file of a killed program is not complete: whole records count.
@@ -25,7 +25,6 @@ use taxel_core::frame::{Frame, FrameSize, LARGEST_VALUE, Label};
 use taxel_core::index::index;
 use taxel_core::parameter::number::counted;
 use taxel_core::quote::shortened;
-use taxel_core::sensor::MAX_SIDE;
 use zip::ZipArchive;
 
 use crate::error::ReadError;
@@ -235,7 +234,7 @@ impl TimeType {
         if is_none || !value.is_finite() {
             return None;
         }
-        let unit = clock.unit(value);
+        let unit = clock.unit();
         Some(clock.since_first(match whole {
             Some(whole) => Time::of_whole(whole, unit),
             None => Time::Seconds(unit.seconds(value)),
@@ -246,30 +245,16 @@ impl TimeType {
 pub(super) fn read_array(input: &mut dyn Read, sink: &mut Sink<'_>) -> Result<(), Stop> {
     let header = Header::read(input)?;
     let layout = Layout::of(&header, sink.options.size)?;
-    let channels = report(&header, &layout, None, sink)?;
+    let channels = report(&layout, None, sink)?;
     frames(input, &header, &layout, &channels, &[], sink)
 }
 
 /// Reports the channels of an array, and returns their numbers.
-fn report(
-    header: &Header,
-    layout: &Layout,
-    array: Option<&str>,
-    sink: &mut Sink<'_>,
-) -> Result<Vec<usize>, Stop> {
+fn report(layout: &Layout, array: Option<&str>, sink: &mut Sink<'_>) -> Result<Vec<usize>, Stop> {
     let mut channels = Vec::new();
     for cells in &layout.channels {
         let name = array.or(cells.name.as_deref());
         channels.push(sink.channel(name, || ChannelInfo::of_size(cells.size))?);
-        let (rows, columns) = (cells.size.rows(), cells.size.columns());
-        // Few sensors are that large, so a row may well be a frame.
-        let is_large = rows.max(columns) > MAX_SIDE.into();
-        if header.shape.len() == 2 && sink.options.size.is_none() && is_large {
-            let text = format!(
-                "an array of {rows} × {columns}, taken as one frame, though each of its {rows} rows may be a frame of {columns} values"
-            );
-            sink.note(&RecordingNote::Flat(text))?;
-        }
     }
     Ok(channels)
 }
@@ -319,9 +304,6 @@ fn frames(
             Some((at, time)) => time.seconds(bytes(*at, time.number), &mut clock),
             None => times.get(index(number)).copied().flatten(),
         };
-        if let Some(note) = clock.take_note() {
-            sink.note(&note)?;
-        }
         let label = layout.label;
         let label = label.and_then(|(at, number)| number.whole(bytes(at, number))?.try_into().ok());
         frame.label = label.map(Label::Number);
@@ -362,16 +344,11 @@ pub(super) fn read_archive(input: impl Read + Seek, sink: &mut Sink<'_>) -> Resu
     let arrays = arrays(archive)?;
     let mut channels = Vec::new();
     for (array, layout) in self::channels(&arrays, sink.options.size)? {
-        let numbers = report(&array.header, &layout, Some(&array.name), sink)?;
+        let numbers = report(&layout, Some(&array.name), sink)?;
         channels.push((array, layout, numbers));
     }
-    let mut noted = None;
     for (array, layout, numbers) in &channels {
-        let (times, note) = times(archive, &arrays, layout.frames)?;
-        if let Some(note) = note.filter(|note| noted.as_ref() != Some(note)) {
-            sink.note(&note)?;
-            noted = Some(note);
-        }
+        let times = times(archive, &arrays, layout.frames)?;
         let file = &mut archive.by_index(array.index).map_err(refused)?;
         Header::read(file)?;
         let read = frames(file, &array.header, layout, numbers, &times, sink);
@@ -444,12 +421,12 @@ fn channels(
     Ok(channels)
 }
 
-/// The times of as many frames, in seconds since the first one, and a note about their unit; empty if there are none.
+/// The times of as many frames, in seconds since the first one; empty if there are none.
 fn times<R: Read + Seek>(
     archive: &mut ZipArchive<R>,
     arrays: &[ArchiveArray],
     frames: u64,
-) -> Result<(Vec<Option<f64>>, Option<RecordingNote>), ReadError> {
+) -> Result<Vec<Option<f64>>, ReadError> {
     let fitting = arrays.iter().filter(|array| array.header.shape == [frames]);
     let named = fitting.filter_map(|array| match time_name(&array.name) {
         Some(unit) => Some((true, array, unit)),
@@ -463,7 +440,7 @@ fn times<R: Read + Seek>(
     let time =
         found.and_then(|(_, array, unit)| Some((array, TimeType::of(array.header.code(), unit)?)));
     let Some((array, time)) = time.filter(|_| frames <= MOST_TIMES) else {
-        return Ok((Vec::new(), None));
+        return Ok(Vec::new());
     };
     let mut file = archive.by_index(array.index).map_err(refused)?;
     let size = time.number.size();
@@ -478,11 +455,8 @@ fn times<R: Read + Seek>(
     }
     let mut clock = FrameClock::default();
     clock.unit = time.unit;
-    let times = bytes
-        .chunks_exact(size)
-        .map(|bytes| time.seconds(bytes, &mut clock))
-        .collect();
-    Ok((times, clock.take_note()))
+    let times = bytes.chunks_exact(size);
+    Ok(times.map(|bytes| time.seconds(bytes, &mut clock)).collect())
 }
 
 #[cfg(test)]
@@ -546,7 +520,7 @@ mod tests {
     }
 
     #[test]
-    fn times_have_the_unit_of_their_name_their_type_or_their_size() {
+    fn times_have_the_unit_of_their_name_or_their_type() {
         let since_1970 = [1_714_564_800_123_456_789, 1_714_564_800_124_456_790];
         let both = |step| vec![Some(0.0), Some(step)];
         for (name, code, times, expected) in [
@@ -576,10 +550,6 @@ mod tests {
                 "{name} {code}"
             );
         }
-        let noted =
-            vec!["the times have no unit and are taken as nanoseconds since 1970".to_owned()];
-        let found = times_of("time", "<i8", since_1970);
-        assert_eq!(found, (both(0.001_000_001), noted));
     }
 
     #[test]

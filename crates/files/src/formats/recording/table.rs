@@ -619,16 +619,12 @@ impl Table<'_, '_> {
             }
         }
         let time = read.map(|read| clock.since_first(read));
-        let mut assumed = clock.take_note();
         for (frame, own) in taken.frames.iter_mut().zip(&layout.channels) {
             let channel = self.sink.channel(own.name.as_deref(), || ChannelInfo {
                 size: own.size,
                 start: start.clone(),
                 ..ChannelInfo::default()
             })?;
-            if let Some(note) = assumed.take() {
-                self.sink.note(&note)?;
-            }
             if let Some(text) = unread.take() {
                 self.sink.unread_time(channel, &text)?;
             }

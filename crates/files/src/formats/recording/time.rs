@@ -9,9 +9,8 @@
 //! ```
 //! Dates that begin with the day or the month are not read, because 01.02. and 02/01 may be the same day.
 
-use std::ops::{Range, RangeInclusive};
+use std::ops::RangeInclusive;
 
-use crate::formats::recording::event::RecordingNote;
 use crate::formats::recording::text;
 use crate::formats::seconds::{since, to_nanoseconds};
 
@@ -67,16 +66,6 @@ impl TimeUnit {
     pub(super) fn seconds(self, number: f64) -> f64 {
         // A quotient of whole numbers is rounded only once.
         number / f64::from(self as u32)
-    }
-
-    /// Guesses the unit of a time without one: milliseconds or smaller if that makes it a date between 2000 and 2100,
-    /// otherwise seconds. A machine's clock may count in any unit since its start; no number shows which.
-    pub(super) fn by_size(number: f64) -> Self {
-        const DATES: Range<f64> = 946_684_800.0..4_102_444_800.0;
-        let smaller = [Self::Milliseconds, Self::Microseconds, Self::Nanoseconds];
-        let mut dated = smaller.into_iter();
-        let dated = dated.find(|unit| DATES.contains(&unit.seconds(number)));
-        dated.unwrap_or(Self::Seconds)
     }
 }
 
@@ -249,29 +238,21 @@ fn whole(text: &str, digits: RangeInclusive<usize>, most: i32) -> Option<i32> {
 /// continue from the same frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct FrameClock {
-    /// The unit of numbers; None if it is not named, until the size of the first number decides it.
+    /// The unit of numbers; seconds if it is not named.
     pub(super) unit: Option<TimeUnit>,
     start: Option<Time>,
     /// The midnights that a clock without a date has passed, and its last time.
     midnights: (u32, Option<f64>),
-    assumed: Option<TimeUnit>,
 }
 
 impl FrameClock {
-    /// Returns the unit of a number. If nothing names it, the size of the first number decides it for all.
-    pub(super) fn unit(&mut self, number: f64) -> TimeUnit {
-        if let Some(unit) = self.unit {
-            return unit;
-        }
-        let unit = TimeUnit::by_size(number);
-        self.unit = Some(unit);
-        self.assumed = Some(unit).filter(|&unit| unit != TimeUnit::Seconds);
-        unit
+    pub(super) fn unit(&self) -> TimeUnit {
+        self.unit.unwrap_or(TimeUnit::Seconds)
     }
 
     /// Returns the time in a field whose value is `number`.
-    pub(super) fn number(&mut self, field: &[u8], number: f64) -> Time {
-        let unit = self.unit(number);
+    pub(super) fn number(&self, field: &[u8], number: f64) -> Time {
+        let unit = self.unit();
         let exact = picoseconds(field, unit).map(Time::Picoseconds);
         exact.unwrap_or(Time::Seconds(unit.seconds(number)))
     }
@@ -293,15 +274,6 @@ impl FrameClock {
     pub(crate) fn since_first(&mut self, time: Time) -> f64 {
         time.since(*self.start.get_or_insert(time))
     }
-
-    /// Returns once a note about a unit that was derived from the size of a time, unless it is seconds.
-    pub(crate) fn take_note(&mut self) -> Option<RecordingNote> {
-        let unit = self.assumed.take()?;
-        Some(RecordingNote::Oddity(format!(
-            "the times have no unit and are taken as {} since 1970",
-            unit.name()
-        )))
-    }
 }
 
 #[cfg(test)]
@@ -315,25 +287,6 @@ mod tests {
         }
         for seconds in [1e-10, 1e308, 0.0, -0.1, f64::NAN] {
             assert_eq!(step(seconds), None, "{seconds}");
-        }
-    }
-
-    #[test]
-    fn only_a_present_day_date_has_a_smaller_unit_than_seconds() {
-        for (number, expected) in [
-            (1_714_564_800.0, TimeUnit::Seconds),
-            (1_714_564_800_123.0, TimeUnit::Milliseconds),
-            (1_714_564_800_123_456.0, TimeUnit::Microseconds),
-            (1_714_564_800_123_456_789.0, TimeUnit::Nanoseconds),
-            // Running for five days: in nanoseconds and in microseconds.
-            (4.3e14, TimeUnit::Seconds),
-            (4.3e11, TimeUnit::Seconds),
-            (5e12, TimeUnit::Seconds),
-            (5e18, TimeUnit::Seconds),
-            (-1_714_564_800_123.0, TimeUnit::Seconds),
-            (f64::INFINITY, TimeUnit::Seconds),
-        ] {
-            assert_eq!(TimeUnit::by_size(number), expected, "{number}");
         }
     }
 
