@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use taxel_core::frame::{Frame, FrameError, Label, Rule, RuleOrigin, SetRule};
 use taxel_files::acquire::FrameSource;
-use taxel_files::formats::recording::{FrameMark, RecordedView};
+use taxel_files::formats::recording::{FrameMark, RecordingMetadata};
 
 use crate::frames::{Pipeline, Taring};
 use crate::tui::live::history::FrameHistory;
@@ -141,14 +141,15 @@ impl Live {
 
     /// Returns threshold, tare and the marks of recorded frames, if frames are recorded and any of these has changed.
     /// They count as written afterwards.
-    pub(super) fn take_changed_view(&mut self) -> Option<RecordedView> {
+    pub(super) fn take_changed_view(&mut self) -> Option<RecordingMetadata> {
         self.recording.name.as_ref()?;
         let own = self.marks.iter();
         let own = own.filter(|(number, _)| *number >= self.recording.from);
-        std::mem::take(&mut self.recording.is_view_changed).then(|| RecordedView {
+        std::mem::take(&mut self.recording.is_view_changed).then(|| RecordingMetadata {
             rule: self.rule(),
             tare: self.pipeline.processing.tare.clone(),
             marks: own.map(|(_, mark)| *mark).collect(),
+            ..RecordingMetadata::default()
         })
     }
 

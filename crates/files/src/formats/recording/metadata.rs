@@ -28,17 +28,6 @@ pub struct FrameMark {
     pub time: Option<f64>,
 }
 
-/// The current view of the frames while they are recorded, which may change meanwhile.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct RecordedView {
-    /// The rule of the imprints on view.
-    pub rule: Option<SetRule>,
-    /// The tare that is subtracted from each cell.
-    pub tare: Option<Tare>,
-    /// The marked frames.
-    pub marks: Vec<FrameMark>,
-}
-
 /// The content of `touch.json`, the metadata beside the recording `touch.npy`: where its frames come from, their
 /// unit, and how they were viewed.
 ///
@@ -101,26 +90,21 @@ struct Described<Rule> {
 
 /// A rule as it is read. It is written with its origin, but then its origin is the file.
 #[derive(Deserialize)]
-#[serde(untagged)]
-enum DescribedRule {
-    Noise {
-        noise: f64,
-        least: Option<NonZeroU32>,
-    },
-    Other(RuleRecord),
+struct DescribedRule {
+    noise: Option<f64>,
+    #[serde(flatten)]
+    other: RuleRecord,
 }
 
 impl DescribedRule {
     fn set(self) -> Result<SetRule, ReadError> {
-        let (rule, least) = match self {
-            Self::Noise { noise, least } => {
-                (Rule::noise(noise).map_err(|error| wrong(&error))?, least)
-            }
-            Self::Other(record) => (record.rule()?, record.least),
+        let rule = match self.noise {
+            Some(noise) => Rule::noise(noise).map_err(|error| wrong(&error))?,
+            None => self.other.rule()?,
         };
         Ok(SetRule {
             rule,
-            least: least.map_or(0, NonZeroU32::get),
+            least: self.other.least.map_or(0, NonZeroU32::get),
             from: RuleOrigin::File,
         })
     }

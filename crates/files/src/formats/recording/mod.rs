@@ -79,7 +79,7 @@ pub use event::{
     ChannelInfo, Column, ReadOptions, RecordingEvent, RecordingNote, RecordingSink, TimeColumn,
 };
 pub use format::{FORMATS, Format, format_of, may_be_recording, read};
-pub use metadata::{FrameMark, RecordedView, RecordingMetadata};
+pub use metadata::{FrameMark, RecordingMetadata};
 pub use stream::{StreamCounts, StreamReader};
 pub use table::read_rows;
 pub use time::TimeUnit;
