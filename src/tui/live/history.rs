@@ -6,9 +6,6 @@ use std::sync::Arc;
 use taxel_core::frame::Frame;
 use taxel_files::acquire::FrameRate;
 
-/// The maximum number of bursts that the rate is computed from: two seconds of a fast source.
-const RATED: usize = 20;
-
 /// Returns the memory that a frame takes, in bytes.
 pub fn bytes_of(frame: &Frame) -> usize {
     size_of::<Frame>() + size_of_val(frame.values())
@@ -36,7 +33,7 @@ impl FrameHistory {
             first: 0,
             bytes: 0,
             most,
-            rate: FrameRate::over(RATED),
+            rate: FrameRate::default(),
             frozen: None,
         }
     }
@@ -44,7 +41,7 @@ impl FrameHistory {
     pub fn push(&mut self, frame: &Arc<Frame>) {
         match frame.time {
             Some(time) => self.rate.add(time),
-            None => self.rate = FrameRate::over(RATED),
+            None => self.rate = FrameRate::default(),
         }
         self.bytes += bytes_of(frame);
         self.frames.push_back(Arc::clone(frame));
@@ -154,7 +151,7 @@ mod tests {
         };
         assert_eq!([push(Some(0.0)), push(Some(0.5))], [None, Some(2.0)]);
         let times = (1..).map(|step| 0.5 + 0.25 * f64::from(step));
-        let rates = times.map(|time| push(Some(time))).take(RATED + 1);
+        let rates = times.map(|time| push(Some(time))).take(21);
         assert_eq!(rates.last(), Some(Some(4.0)));
         assert_eq!(push(None), None, "the newest frame has no time");
     }

@@ -18,29 +18,6 @@ use crate::error::ReadError;
 use crate::formats::file::BYTE_ORDER_MARK;
 use crate::formats::job::too_large;
 
-/// The digits of a decimal without an exponent as a whole number, whether it is negative, and how many of its digits are
-/// decimals, after one of the `points`. None for anything else, and for more digits than `most`.
-pub(super) fn digits(text: &[u8], points: &[u8], most: u32) -> Option<(u128, bool, u32)> {
-    let (negative, digits) = match text {
-        [b'-', rest @ ..] => (true, rest),
-        [b'+', rest @ ..] => (false, rest),
-        _ => (false, text),
-    };
-    let (mut whole, mut count, mut decimals, mut has_point) = (0_u128, 0, 0, false);
-    for &byte in digits {
-        match byte {
-            b'0'..=b'9' if count < most => {
-                whole = whole * 10 + u128::from(byte - b'0');
-                count += 1;
-                decimals += u32::from(has_point);
-            }
-            _ if !has_point && points.contains(&byte) => has_point = true,
-            _ => return None,
-        }
-    }
-    (count > 0).then_some((whole, negative, decimals))
-}
-
 /// Reads a finite decimal without blanks around it, such as `12`, `-0.5` or `+1e-3`; None for anything else.
 pub(super) fn read_number(text: &[u8]) -> Option<f64> {
     // The standard library also accepts words: inf, nan, infinity.

@@ -138,10 +138,24 @@ impl Time {
 
 /// Returns the picoseconds of a decimal number of up to 20 digits without an exponent, rounded to whole ones.
 fn picoseconds(field: &[u8], unit: TimeUnit) -> Option<i128> {
-    let (whole, negative, decimals) = text::digits(field, b".,", 20)?;
-    let parts = 10_i128.pow(decimals);
-    let number = (whole.cast_signed() * unit.picoseconds() + parts / 2) / parts;
-    Some(if negative { -number } else { number })
+    let negative = field.starts_with(b"-");
+    let digits = field.strip_prefix(b"+").unwrap_or(field);
+    let digits = digits.strip_prefix(b"-").unwrap_or(digits);
+    let (mut whole, mut count, mut parts) = (0_i128, 0, None::<i128>);
+    for &byte in digits {
+        match byte {
+            b'0'..=b'9' if count < 20 => {
+                whole = whole * 10 + i128::from(byte - b'0');
+                count += 1;
+                parts = parts.map(|parts| parts * 10);
+            }
+            b'.' | b',' if parts.is_none() => parts = Some(1),
+            _ => return None,
+        }
+    }
+    let parts = parts.unwrap_or(1);
+    let number = (whole * unit.picoseconds() + parts / 2) / parts;
+    (count > 0).then_some(if negative { -number } else { number })
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
