@@ -39,8 +39,7 @@ fn an_imprint_is_described_with_any_kind_of_line_ends() {
 
 #[test]
 fn a_bad_imprint_is_reported_with_line_and_column() {
-    let other =
-        "not an imprint: expected rows of '#' and '.', a table of 0 and 1 (CSV), PBM or NPY";
+    let other = "not an imprint: expected rows of '#' and '.', a table of 0 and 1 (CSV), or NPY";
     for (input, message) in [
         (
             &b"##\n#x\n"[..],

@@ -58,7 +58,7 @@ fn every_format_of_an_imprint_has_the_same_description() {
     assert_eq!(folder.run("export washer a.txt"), said("written: a.txt\n"));
     let expected = folder.run("describe a.txt --json");
     assert!(expected.stdout.contains("\"nae\":"));
-    for name in ["a.pbm", "a.csv", "a.npy", "A.CSV"] {
+    for name in ["a.csv", "a.npy", "A.CSV"] {
         let run = folder.run(&format!("export a.txt {name}"));
         assert_eq!(run.status, Some(0), "{name}");
         let described = folder.run(&format!("describe {name} --json"));
@@ -66,7 +66,6 @@ fn every_format_of_an_imprint_has_the_same_description() {
         let saved = folder.run(&format!("--library lib library save same {name} --force"));
         assert_eq!(saved, said("saved as same\n"));
     }
-    assert!(folder.read("a.pbm").starts_with(b"P4\n16 16\n"));
     let stored = folder.run("--library lib describe same --json");
     assert_eq!(stored.stdout, expected.stdout);
     // The byte order mark that editors write before a text is not a taxel.
@@ -160,7 +159,7 @@ fn bad_targets_are_refused_with_what_is_expected() {
     for (line, message) in [
         (
             "export washer washer.bmp",
-            "invalid value 'washer.bmp' for '<TO>': expected a name that ends in .txt, .pbm, .csv, .npy or .svg\n",
+            "invalid value 'washer.bmp' for '<TO>': expected a name that ends in .txt, .csv, .npy or .svg\n",
         ),
         (
             "figure hexagon --force",
@@ -169,8 +168,6 @@ fn bad_targets_are_refused_with_what_is_expected() {
     ] {
         misused(line, message);
     }
-    let run = taxel("export - a.csv", "P4 2 1 ");
-    refused(&run, 1, "standard input: PBM: expected 1 bytes of bits");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Exchange of files with numpy, Pillow and mcap, where they are installed; with `TAXEL_NUMPY` set, they must be.
+//! Exchange of files with numpy and mcap, where they are installed; with `TAXEL_NUMPY` set, they must be.
 
 use std::path::Path;
 use std::process::Command;
@@ -12,7 +12,7 @@ use super::python_has;
 /// Returns the washer as rows of `#` and `.`, and a folder with its files.
 fn washer() -> (String, TempDir) {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
-    for name in ["a.txt", "a.npy", "a.csv", "a.pbm", "a.svg"] {
+    for name in ["a.txt", "a.npy", "a.csv", "a.svg"] {
         export(folder.path(), &format!("washer {name}"));
     }
     let text = std::fs::read_to_string(folder.path().join("a.txt")).expect("written");
@@ -79,28 +79,6 @@ for row in a:
         let back = std::fs::read_to_string(folder.path().join("back.txt"));
         assert_eq!(back.expect("written"), text, "{name}");
     }
-}
-
-#[test]
-fn files_are_exchanged_with_pillow() {
-    if !python_has("PIL.Image") {
-        return;
-    }
-    let (text, folder) = washer();
-    // Black is an active taxel; in Pillow's own bitmaps, 0 is black.
-    let script = "
-from PIL import Image
-a = Image.open('a.pbm')
-assert a.mode == '1' and a.size == (16, 16)
-a.save('pillow.pbm')
-for y in range(16):
-    print(''.join('.' if a.getpixel((x, y)) else '#' for x in range(16)))
-";
-    let said = others(folder.path(), script);
-    assert_eq!(said, text);
-    export(folder.path(), "pillow.pbm back.txt");
-    let back = std::fs::read_to_string(folder.path().join("back.txt"));
-    assert_eq!(back.expect("written"), text);
 }
 
 /// The package of the format's authors writes chunks with each compression.

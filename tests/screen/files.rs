@@ -11,14 +11,14 @@ fn files_are_written_by_extension_and_opened_by_content() {
     let folder = folder();
     let place = folder.path().to_str().expect("a name in ASCII").to_owned();
     let mut session = session("f<Enter><Space>");
-    for ending in ["txt", "csv", "npy", "pbm", "json", "svg"] {
+    for ending in ["txt", "csv", "npy", "json", "svg"] {
         then(
             &mut session,
             &format!(":write {place}/made.{ending}<Enter>"),
             &["written: "],
         );
     }
-    for ending in ["txt", "csv", "npy", "pbm"] {
+    for ending in ["txt", "csv", "npy"] {
         then(
             &mut session,
             &format!("n:open {place}/made.{ending}<Enter>"),

@@ -1,7 +1,7 @@
 //! Bytes and files of taxel: what `taxel-core` computes, read and written.
 //!
 //! ```text
-//!  formats   text, PBM, CSV, NPY, JSON, atlases, models; outlines from SVG and points; recordings and streams of
+//!  formats   text, CSV, NPY, JSON, atlases, models; outlines from SVG and points; recordings and streams of
 //!            sensors; drawings
 //!  storage   files: atomic writes, the folder of stored shapes, journal, trash
 //!  acquire   where frames come from: serial, pipes, tcp, files; recording them

@@ -12,8 +12,7 @@ use crate::cli::{Context, Failure};
 
 const EXAMPLES: &str = "\
 An imprint is text with one line per row, '#' for an active taxel and '.' for an
-inactive one; or a table of numbers (CSV), a bitmap (PBM) or a numpy array
-(NPY). In a table or an array, inactive taxels are 0, and active ones 1 or 255.
+inactive one; or a table of numbers (CSV) or a numpy array (NPY). In a table or an array, inactive taxels are 0, and active ones 1 or 255.
 An imprint has at most 64 x 64 taxels. taxel recognises the format from the
 content, not from the extension. A stored shape is a JSON file. If a stored
 shape and a file have the same name, taxel uses the shape.

@@ -20,8 +20,7 @@ use crate::cli::{Context, Failure};
 const EXAMPLES: &str = "\
 The extension of TO decides the format:
   .txt  rows of '#' and '.'         .svg  a drawing: matrix, outline (if known),
-  .pbm  a bitmap, P4                      rectangle, CG, CD, axes, legend
-  .csv  a table of 0 and 1
+  .csv  a table of 0 and 1                rectangle, CG, CD, axes, legend
   .npy  a numpy array of bool
 Drawings are grey; with a pitch they are in mm. An existing file is replaced
 only with --force. To export a figure, use 'taxel figure ... --export'.
@@ -29,7 +28,7 @@ only with --force. To export a figure, use 'taxel figure ... --export'.
 Examples:
   taxel export washer washer.svg --pitch 2.5
   taxel export imprint.txt imprint.npy --force
-  taxel export key key.pbm
+  taxel export key key.csv
   taxel figure hexagon --angle 17 --export hexagon.svg";
 
 /// Write a shape for other programs, or draw it
@@ -109,7 +108,7 @@ fn export() -> impl TypedValueParser<Value = Export> {
     OsStringValueParser::new().try_map(|name| {
         let path = PathBuf::from(name);
         let format = ExportFormat::of_path(&path)
-            .ok_or("expected a name that ends in .txt, .pbm, .csv, .npy or .svg")?;
+            .ok_or("expected a name that ends in .txt, .csv, .npy or .svg")?;
         Ok::<_, &str>(Export { path, format })
     })
 }

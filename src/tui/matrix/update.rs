@@ -353,7 +353,7 @@ pub(in crate::tui) fn is_usable(app: &App, message: &Message) -> bool {
     }
 }
 
-const ENDINGS: &str = ".txt .csv .npy .pbm .json .svg";
+const ENDINGS: &str = ".txt .csv .npy .json .svg";
 
 fn write(app: &mut App, name: String) {
     if app.reading().imprint.is_empty() {

@@ -4,6 +4,7 @@ use taxel_core::frame::Frame;
 
 use super::samples::sample;
 use super::{Recorded, channel_shape, recorded};
+use crate::hostile::malice::packed::{Packing, Zip};
 
 /// Reads `bytes` after the byte at `index` was changed.
 fn with_another_byte(bytes: &[u8], index: usize) -> Recorded {
@@ -29,43 +30,10 @@ fn error(found: &Recorded) -> Option<String> {
     found.error.as_ref().map(ToString::to_string)
 }
 
-/// Returns an archive with one uncompressed entry and its CRC-32.
+/// Returns an archive with one uncompressed entry and its checksum.
 fn archive(name: &str, content: &[u8]) -> Vec<u8> {
-    let length = u32::try_from(content.len()).expect("short").to_le_bytes();
-    let sizes = [&crc32(content).to_le_bytes()[..], &length, &length].concat();
-    let name_length = [u8::try_from(name.len()).expect("short"), 0];
-    // Version, flags, method, time and date.
-    let common = [
-        &[20, 0, 0, 0, 0, 0, 0, 0, 0x21, 0][..],
-        &sizes,
-        &name_length,
-        &[0, 0],
-    ]
-    .concat();
-    let entry = [&b"PK\x03\x04"[..], &common[..], name.as_bytes(), content].concat();
-    let directory = [
-        &b"PK\x01\x02\x14\x00"[..],
-        &common[..],
-        &[0; 14],
-        name.as_bytes(),
-    ]
-    .concat();
-    let number = |length: usize| u32::try_from(length).expect("short").to_le_bytes();
-    let end = [
-        &b"PK\x05\x06\0\0\0\0\x01\0\x01\0"[..],
-        &number(directory.len()),
-        &number(entry.len()),
-        &[0, 0],
-    ];
-    [entry, directory, end.concat()].concat()
-}
-
-fn crc32(bytes: &[u8]) -> u32 {
-    let step = |sum: u32, _| (sum >> 1) ^ if sum & 1 == 1 { 0xedb8_8320 } else { 0 };
-    let sum = bytes.iter().fold(u32::MAX, |sum, byte| {
-        (0..8).fold(sum ^ u32::from(*byte), step)
-    });
-    !sum
+    let zip = Zip::default().with(name, Packing::Stored, content, content.len() as u64);
+    zip.finish()
 }
 
 #[test]
@@ -129,7 +97,7 @@ fn mcap_of(arrays: &[Vec<u8>], of_chunk: u32, of_data: u32) -> Vec<u8> {
         records.extend(record(5, &[&[1, 0][..], &[0; 20], &cdr].concat()));
     }
     let length = (records.len() as u64).to_le_bytes();
-    let sum = (of_chunk * crc32(&records)).to_le_bytes();
+    let sum = (of_chunk * crc32fast::hash(&records)).to_le_bytes();
     let head = [&[0; 16][..], &length, &sum, &[0; 4], &length].concat();
     let magic = b"\x89MCAP0\r\n";
     let chunk = record(6, &[head, records].concat());
@@ -139,7 +107,7 @@ fn mcap_of(arrays: &[Vec<u8>], of_chunk: u32, of_data: u32) -> Vec<u8> {
         &chunk,
     ]
     .concat();
-    let sum = (of_data * crc32(&data)).to_le_bytes();
+    let sum = (of_data * crc32fast::hash(&data)).to_le_bytes();
     [data, record(15, &sum), record(2, &[0; 20]), magic.to_vec()].concat()
 }
 

@@ -7,7 +7,7 @@ mod bodies;
 
 mod found;
 
-mod malice;
+pub(crate) mod malice;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

@@ -174,12 +174,8 @@ impl<'a, 'b> Session<'a, 'b> {
         let Some(rate) = self.silence.look(frames, bytes, self.ticked) else {
             return ControlFlow::Continue(());
         };
-        let mut reason = self
-            .counts
-            .silence(rate, self.source.unused_baud().is_none());
-        if matches!(self.source, FrameSource::File(path) if !path.is_file()) {
-            reason += "; its file was moved or removed";
-        }
+        let has_baud = self.source.unused_baud().is_none();
+        let reason = self.counts.silence(rate, has_baud);
         (self.consumer)(AcquireEvent::Silent {
             counts: &self.counts,
             reason: &reason,

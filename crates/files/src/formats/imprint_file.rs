@@ -1,4 +1,4 @@
-//! The formats in which a plain imprint is exchanged with other programs: text, PBM, CSV and NPY.
+//! The formats in which a plain imprint is exchanged with other programs: text, CSV and NPY.
 //!
 //! When a file is read, its content decides the format; when it is written, the ending of its name does.
 //!
@@ -18,7 +18,7 @@ use crate::error::{ReadError, ReadErrorKind};
 use crate::formats::drawing::Drawing;
 use crate::formats::file::{has_ending, without_mark};
 use crate::formats::shape::StoredShape;
-use crate::formats::{numpy, pbm, table};
+use crate::formats::{numpy, table};
 
 /// The size limit of an imprint's file in bytes, 1 MiB; a larger file is refused unread.
 pub const MAX_BYTES: usize = 1 << 20;
@@ -38,10 +38,6 @@ impl ExportFormat {
         Self {
             name: "txt",
             write: |drawing| format!("{}\n", drawing.imprint).into_bytes(),
-        },
-        Self {
-            name: "pbm",
-            write: |drawing| pbm::write(&drawing.imprint),
         },
         Self {
             name: "csv",
@@ -71,9 +67,8 @@ type Begins = fn(&[u8]) -> bool;
 type Reader = fn(&[u8]) -> Result<Imprint, ReadError>;
 
 /// How each format begins, and how it is read.
-const READERS: [(Begins, Reader); 4] = [
+const READERS: [(Begins, Reader); 3] = [
     (is_text, read_text),
-    (pbm::begins, pbm::read),
     (table::begins, table::read),
     (
         |bytes| bytes.starts_with(numpy::MAGIC),
@@ -99,7 +94,7 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ReadError> {
 }
 
 fn unknown() -> ReadError {
-    let text = "not an imprint: expected rows of '#' and '.', a table of 0 and 1 (CSV), PBM or NPY";
+    let text = "not an imprint: expected rows of '#' and '.', a table of 0 and 1 (CSV), or NPY";
     ReadError::new(text).of_kind(ReadErrorKind::UnknownFormat)
 }
 
@@ -149,8 +144,8 @@ impl Content {
     }
 }
 
-/// Reads any bytes: a stored shape if the first character is `{`, otherwise an imprint as text, PBM, CSV or NPY. A
-/// byte order mark, which some editors put before every text, is skipped.
+/// Reads any bytes: a stored shape if the first character is `{`, otherwise an imprint as text, CSV or NPY. A byte
+/// order mark, which some editors put before every text, is skipped.
 ///
 /// # Errors
 /// Returns the first error and its place.

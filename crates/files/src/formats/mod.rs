@@ -20,7 +20,6 @@ pub mod name;
 mod named_shape;
 pub mod numpy;
 mod outline;
-mod pbm;
 mod record;
 pub mod recording;
 pub(crate) mod seconds;

@@ -61,7 +61,7 @@ pub(crate) fn imprint(bytes: &[u8]) -> bool {
     }
 }
 
-/// Reads an imprint in other programs' formats: text, PBM, CSV, NPY.
+/// Reads an imprint in other programs' formats: text, CSV, NPY.
 pub(crate) fn exchange(bytes: &[u8]) -> bool {
     match imprint_file::read(bytes) {
         Ok(imprint) => {

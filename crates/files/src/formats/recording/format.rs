@@ -212,9 +212,7 @@ pub fn read(
 /// The error for a content of no known format.
 pub(super) fn refused(head: &[u8]) -> ReadError {
     let text = without_mark(head).trim_ascii();
-    if is_bitmap(head) {
-        foreign("a PBM image (taxel describe reads it)")
-    } else if head.starts_with(b"SQLite format 3\0") {
+    if head.starts_with(b"SQLite format 3\0") {
         foreign("an SQLite database: of a ROS 2 bag, ros2 bag convert makes an MCAP file")
     } else if head.is_empty() {
         ReadError::new("empty, expected a recording").of_kind(ReadErrorKind::UnknownFormat)
@@ -231,14 +229,10 @@ fn has(text: &[u8], word: &[u8]) -> bool {
     text.windows(word.len()).any(|window| window == word)
 }
 
-fn is_bitmap(head: &[u8]) -> bool {
-    matches!(head, [b'P', b'4', blank, ..] if blank.is_ascii_whitespace())
-}
-
 /// Whether this may be the text of a recording.
 fn is_text(head: &[u8]) -> bool {
     let text = without_mark(head);
-    !text.contains(&0) && !is_bitmap(text) && !text.starts_with(b"<")
+    !text.contains(&0) && !text.starts_with(b"<")
 }
 
 fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
