@@ -11,12 +11,11 @@ use taxel::tui::script::runner::{ScriptFailure, ScriptOptions, Shown, run};
 
 use crate::session::world;
 
-fn settings(styles: bool, json: bool) -> ScriptOptions {
+fn settings() -> ScriptOptions {
     ScriptOptions {
         options: Options::plain(false),
         size: (80, 24),
-        styles,
-        json,
+        styles: true,
         keymap: Keymap::default(),
         folder: PathBuf::from("tests/scripts"),
         is_confined: false,
@@ -24,8 +23,8 @@ fn settings(styles: bool, json: bool) -> ScriptOptions {
     }
 }
 
-fn output(script: &str, json: bool) -> Result<String, ScriptFailure> {
-    let settings = settings(true, json);
+fn output(script: &str) -> Result<String, ScriptFailure> {
+    let settings = settings();
     let mut printed = String::new();
     run(script, &[], &settings, world(), &mut |shown: Shown<'_>| {
         printed.push_str(shown.text);
@@ -53,7 +52,7 @@ fn every_script_prints_its_screens() {
     let mut failures = Vec::new();
     for path in scripts {
         let script = std::fs::read_to_string(&path).expect("a script can be read");
-        let printed = match output(&script, false) {
+        let printed = match output(&script) {
             Ok(printed) => printed,
             Err(failure) => {
                 failures.push(format!("{}: {failure}", path.display()));
@@ -74,32 +73,28 @@ fn every_script_prints_its_screens() {
 #[test]
 fn a_script_gives_the_same_answers_every_time() {
     let script = "Keys f<Enter>smine<Enter><Tab>c\nScreen one\nState\nKeys l\nScreen two\n";
-    let first = output(script, true).expect("it holds");
-    assert_eq!(output(script, true).expect("it holds"), first);
-    assert_eq!(first.lines().count(), 3);
-    for line in first.lines() {
-        let _: serde_json::Value = serde_json::from_str(line).expect("a line is JSON");
-    }
+    let first = output(script).expect("it holds");
+    assert_eq!(output(script).expect("it holds"), first);
 }
 
 /// On a page that hides the cursor, it has no place, not even that of an earlier screen.
 #[test]
 fn a_hidden_cursor_has_no_place() {
     let script = "Keys f\nScreen\nKeys <Esc>?\nScreen\n";
-    let json = output(script, true).expect("it holds");
-    let cursors: Vec<serde_json::Value> = json
-        .lines()
-        .map(|line| serde_json::from_str::<serde_json::Value>(line).expect("JSON")["cursor"].take())
-        .collect();
+    let shown = output(script).expect("it holds");
+    let screens = shown.lines().filter(|line| line.starts_with("--- screen"));
     assert_eq!(
-        cursors,
-        [serde_json::json!([36, 3]), serde_json::Value::Null]
+        screens.collect::<Vec<_>>(),
+        [
+            "--- screen 80x24 cursor 36,3 ---",
+            "--- screen 80x24 no cursor ---"
+        ]
     );
 }
 
 /// Returns the message of a script that fails.
 fn failure(script: &str) -> String {
-    let failed = output(script, false).expect_err("it does not hold");
+    let failed = output(script).expect_err("it does not hold");
     failed.to_string()
 }
 
@@ -166,7 +161,7 @@ fn a_script_sets_options_and_shapes() {
         "Size 60x20\nSet ascii on\nSet columns 4\nSet rows 3\nSet threshold 0.75\nSet pitch 2\nSet shape {PAIR}\n\
          Expect /column 2, row 1/\nState /document/sensor\nKeys lpair<Enter>\nExpect /pair loaded/\nScreen"
     );
-    let printed = output(&script, false).expect("it holds");
+    let printed = output(&script).expect("it holds");
     assert!(printed.is_ascii(), "{printed}");
     let sensor = printed.lines().next().expect("the state");
     for part in [
@@ -181,9 +176,9 @@ fn a_script_sets_options_and_shapes() {
         "Set leftover {PAIR}\nExpect /unsaved work from last time: pair, 2 taxels/\nKeys y\nExpect /restored/\n\
          Expect /NA 2 in all/\nKeys u\nExpect /nothing to undo/"
     );
-    output(&script, false).expect("it holds");
+    output(&script).expect("it holds");
     let both = format!("Set library \"/nowhere\"\nSet shape {PAIR}");
-    let told = output(&both, false).expect_err("it does not hold");
+    let told = output(&both).expect_err("it does not hold");
     assert_eq!(
         told.to_string(),
         "line 2: Set library cannot be used with Set shape or Set leftover"
@@ -197,7 +192,7 @@ fn a_script_prints_while_it_runs() {
     let stopped = run(
         "Screen\nScreen\nScreen",
         &[],
-        &settings(false, false),
+        &settings(),
         world(),
         &mut |_| {
             printed += 1;
@@ -219,7 +214,7 @@ fn a_script_prints_while_it_runs() {
 #[test]
 fn a_whole_screen_is_expected() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut settings = settings(false, false);
+    let mut settings = settings();
     settings.folder = folder.path().to_owned();
     settings.is_confined = true;
     let mut play = |keys: &str, file: &str, update| {
@@ -260,5 +255,5 @@ fn a_whole_screen_is_expected() {
 fn wide_characters_cover_two_columns() {
     let script = "Keys <Space>sfoobar<Enter>s<C-u>\nType \"字字\"\nKeys <Enter>\n\
                   Expect /saved as 字字/\nExpect /(?m)0.50 · 字字$/";
-    output(script, false).expect("it holds");
+    output(script).expect("it holds");
 }

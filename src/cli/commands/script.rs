@@ -10,14 +10,12 @@
 //! A script answers the program's questions itself, and may come from a stranger. So it cannot choose a library of
 //! the user's, and writes only below its own folder, unless `--allow-outside` is given.
 
-use std::collections::{HashMap, HashSet};
 use std::io::{self, Read, Write};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use taxel_files::formats::Name;
 use taxel_files::formats::file::without_mark;
-use taxel_files::formats::name::folded;
 use taxel_files::storage;
 
 use crate::cli::commands::export;
@@ -77,9 +75,6 @@ pub(crate) struct Script {
     /// Add a grid of style letters to screens
     #[arg(long)]
     styles: bool,
-    /// Print screens as lines of JSON
-    #[arg(long)]
-    json: bool,
     /// Draw each screen into this folder too, as NAME.svg
     #[arg(long, value_name = "DIR")]
     svg: Option<PathBuf>,
@@ -107,9 +102,9 @@ impl Script {
         if sources.is_empty() && self.keys.is_none() {
             sources.push("-".into());
         }
-        let mut names = Names::default();
+        let mut drawn = 0;
         let mut run = |source: Option<&PathBuf>| {
-            self.play(cx, source.map(PathBuf::as_path), &keys, &mut names)
+            self.play(cx, source.map(PathBuf::as_path), &keys, &mut drawn)
         };
         match &sources[..] {
             [] => run(None),
@@ -136,7 +131,7 @@ impl Script {
         cx: &Context,
         source: Option<&Path>,
         keys: &[Key],
-        names: &mut Names,
+        drawn: &mut u32,
     ) -> Result<(), Failure> {
         let folder = source.map_or(Path::new("."), storage::folder_of);
         let ascii = Charset::current() == Charset::Ascii;
@@ -158,7 +153,6 @@ impl Script {
             },
             size: self.size,
             styles: self.styles,
-            json: self.json,
             keymap: cx.settings.keymap().clone(),
             folder: folder.to_owned(),
             // Keys alone are the user's own.
@@ -177,7 +171,7 @@ impl Script {
             None => Vec::new(),
         };
         let mut lost = None;
-        let mut show = |shown: Shown<'_>| match self.write(&shown, names) {
+        let mut show = |shown: Shown<'_>| match self.write(&shown, drawn) {
             Ok(()) => ControlFlow::Continue(()),
             Err(failure) => {
                 lost = Some(failure);
@@ -196,9 +190,17 @@ impl Script {
         }
     }
 
-    fn write(&self, shown: &Shown<'_>, names: &mut Names) -> Result<(), Failure> {
+    /// Prints what a script shows. The drawing of a screen has its name, with `-` for characters that are not valid, or
+    /// its number.
+    fn write(&self, shown: &Shown<'_>, drawn: &mut u32) -> Result<(), Failure> {
         if let (Some((name, session)), Some(folder)) = (shown.screen, &self.svg) {
-            let name = names.next(name);
+            *drawn += 1;
+            let fits = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
+            let name: String = name
+                .chars()
+                .map(|c| if fits(c) { c } else { '-' })
+                .collect();
+            let name = Name::new(&name).map_or(format!("screen-{drawn}"), |own| own.to_string());
             let path = folder.join(format!("{name}.svg"));
             let existing = export::replacing(self.force);
             storage::write(&path, session.svg(&name).as_bytes(), existing)?;
@@ -206,37 +208,6 @@ impl Script {
         let mut output = io::stdout().lock();
         output.write_all(shown.text.as_bytes())?;
         Ok(output.flush()?)
-    }
-}
-
-/// The names of the drawings so far, which must all differ.
-#[derive(Debug, Default)]
-struct Names {
-    taken: HashSet<String>,
-    last: HashMap<String, u32>,
-}
-
-impl Names {
-    /// Returns the file name of a screen's drawing, without extension. Characters that are not valid become `-`, a
-    /// screen without a name gets its number, and a number is added to a name that is taken.
-    fn next(&mut self, name: &str) -> String {
-        let fits = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
-        let name: String = name
-            .chars()
-            .map(|c| if fits(c) { c } else { '-' })
-            .collect();
-        let name = match Name::new(&name) {
-            Ok(name) => name.to_string(),
-            Err(_) => format!("screen-{}", self.taken.len() + 1),
-        };
-        let mut free = name.clone();
-        while !self.taken.insert(folded(&free)) {
-            // The last number is kept because a script may have a million screens of one name.
-            let number = self.last.entry(folded(&name)).or_insert(1);
-            *number += 1;
-            free = format!("{name}-{number}");
-        }
-        free
     }
 }
 
@@ -257,20 +228,4 @@ fn bytes(path: &Path) -> io::Result<Vec<u8>> {
         return Err(io::Error::other(text));
     }
     Ok(bytes)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Names;
-
-    #[test]
-    fn each_drawing_has_a_name_of_its_own() {
-        let mut names = Names::default();
-        let screens = ["a b", "", "a-b", "A b", "../x", ""];
-        let drawn = screens.map(|screen| names.next(screen));
-        assert_eq!(
-            drawn,
-            ["a-b", "screen-2", "a-b-2", "A-b-3", "screen-5", "screen-6"]
-        );
-    }
 }

@@ -44,7 +44,6 @@ pub struct ScriptOptions {
     /// Columns and rows of the screen, unless the script sets them.
     pub size: (u16, u16),
     pub styles: bool,
-    pub json: bool,
     pub keymap: Keymap,
     /// The folder of the script, below which the screens are that it expects.
     pub folder: PathBuf,
@@ -444,15 +443,6 @@ impl Runner<'_> {
     fn print_screen(&mut self, name: &str) -> Result<(), ScriptFailure> {
         let session = &self.session;
         let ((columns, rows), cursor) = (session.size(), session.cursor());
-        if self.options.json {
-            let lines = |grid: String| grid.lines().map(str::to_owned).collect::<Vec<_>>();
-            let object = json!({
-                "screen": name, "size": [columns, rows],
-                "cursor": cursor.map(|cursor| [cursor.x, cursor.y]),
-                "rows": lines(session.screen()), "styles": lines(session.styles()),
-            });
-            return self.print(&format!("{object}\n"), Some(name));
-        }
         let space = if name.is_empty() { "" } else { " " };
         let cursor = cursor.map_or("no cursor".to_owned(), |cursor| {
             format!("cursor {},{}", cursor.x, cursor.y)

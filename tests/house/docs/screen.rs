@@ -27,7 +27,6 @@ fn screens(script: &str, title: impl Fn(&str) -> String) -> Vec<(String, String)
         },
         size: (80, 24),
         styles: false,
-        json: false,
         keymap: Keymap::default(),
         folder: PathBuf::from("."),
         is_confined: false,

@@ -163,7 +163,6 @@ pub(crate) fn play(bytes: &[u8]) -> bool {
         options: options(),
         size: (80, 24),
         styles: true,
-        json: text.len() % 2 == 0,
     };
     let (mut printed, mut world) = (String::new(), world());
     world.pose_limit = Some(MOST_POSES);
