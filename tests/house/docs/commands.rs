@@ -3,8 +3,8 @@
 //! A `console` block is run in a folder of its page that holds the samples of the guide. `$` begins a line for the
 //! shell and `>` continues it. What the lines print follows them; a block may also leave all of it out. A `python`
 //! block is run there, too, if Python has the modules that it imports, and a `taxel` block is a script for the screen.
-//! In an `sh` block is what no test can run, such as a sensor on a serial line: it is only asked whether `taxel` takes
-//! the flags.
+//! A `bash` block is run without a look at what it prints. In an `sh` block is what no test can run, such as a sensor on
+//! a serial line: it is only asked whether `taxel` takes the flags.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -74,7 +74,10 @@ pub(crate) fn run(page: &Path, text: &str) -> (String, PathBuf) {
     for code in parts.iter_mut().skip(1).step_by(2) {
         match code.split_once('\n') {
             Some(("console", lines)) => {
-                *code = format!("console\n{}", console(furnished(&folder), lines))
+                *code = format!("console\n{}", console(furnished(&folder), lines));
+            }
+            Some(("bash", lines)) => {
+                printed(furnished(&folder), &format!("set -e\n{lines}"));
             }
             Some(("python", program)) => python(furnished(&folder), program),
             Some(("taxel", script)) => {
