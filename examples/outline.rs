@@ -7,22 +7,24 @@
 
 use std::fmt::Write;
 
-use taxel_core::geometry::{Ellipse, Pen, Point, Polygon, Real, Side, Solid};
+use taxel_core::geometry::{Ellipse, Pen, Point, Real, Side, Solid};
 use taxel_core::prelude::*;
 
 /// A plate bounded by a polygon, with a round hole; lengths in cells.
 struct Plate {
-    outline: Polygon,
+    /// Clockwise as seen.
+    corners: [(f64, f64); 6],
     hole: (f64, f64),
     radius: f64,
 }
 
 impl Solid for Plate {
     fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
-        self.outline.draw(pen);
+        let point = |(x, y)| Point::new(T::decimal(x), T::decimal(y));
+        pen.ring(&self.corners.map(point), Side::Inside);
         let radius = T::decimal(self.radius);
         let hole = Ellipse {
-            centre: Point::new(T::decimal(self.hole.0), T::decimal(self.hole.1)),
+            centre: point(self.hole),
             across: Point::new(radius, T::ZERO),
             along: Point::new(T::ZERO, radius),
         };
@@ -37,16 +39,15 @@ fn main() {
 
 /// Returns the imprint of the plate, the covered area, and what a robot would know about the plate.
 pub(crate) fn report() -> String {
-    let corners = [
-        (2.3, 1.6),
-        (8.3, 1.6),
-        (8.3, 7.6),
-        (14.3, 7.6),
-        (14.3, 13.6),
-        (2.3, 13.6),
-    ];
     let plate = Plate {
-        outline: Polygon::new(corners),
+        corners: [
+            (2.3, 1.6),
+            (8.3, 1.6),
+            (8.3, 7.6),
+            (14.3, 7.6),
+            (14.3, 13.6),
+            (2.3, 13.6),
+        ],
         hole: (5.3, 10.6),
         radius: 1.8,
     };

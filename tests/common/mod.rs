@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "every test file uses its own part of this one")]
 
 use taxel_core::figure::{Figure, FigureKind};
+use taxel_core::geometry::{Pen, Point, Real, Side, Solid};
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::Parameter;
 use taxel_core::picture::Picture;
@@ -108,6 +109,32 @@ pub(crate) fn picture(text: &str, side: u8) -> Source {
     };
     let home = Source::from(Picture::at_home(grid(rows)));
     home.placed(&square(side), given).expect("values in range")
+}
+
+/// A polygon through vertices in either sense.
+pub(crate) struct Polygon(Vec<(f64, f64)>);
+
+impl Polygon {
+    pub(crate) fn new(vertices: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let mut vertices: Vec<_> = vertices.into_iter().collect();
+        let next = vertices.iter().cycle().skip(1);
+        let products = vertices
+            .iter()
+            .zip(next)
+            .map(|(a, b)| a.0 * b.1 - b.0 * a.1);
+        if products.sum::<f64>() < 0.0 {
+            vertices.reverse();
+        }
+        Self(vertices)
+    }
+}
+
+impl Solid for Polygon {
+    fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
+        let point = |&(x, y): &(f64, f64)| Point::new(T::decimal(x), T::decimal(y));
+        let points: Vec<Point<T>> = self.0.iter().map(point).collect();
+        pen.ring(&points, Side::Inside);
+    }
 }
 
 /// Reads an imprint from rows with `/` or line ends between them. Spaces around the rows are ignored.

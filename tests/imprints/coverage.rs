@@ -4,10 +4,10 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-use taxel_core::geometry::{Ellipse, Extent, Pen, Point, Polygon, Real, Side, Solid};
+use taxel_core::geometry::{Ellipse, Extent, Pen, Point, Real, Side, Solid};
 use taxel_core::touch::{Plane, reaches_beyond};
 
-use crate::common::{Random, figure, picture, sensor};
+use crate::common::{Polygon, Random, figure, picture, sensor};
 
 /// The number of columns and of rows of the sensor.
 const SIDE: u8 = 16;
@@ -161,37 +161,6 @@ fn user_defined_polygons_cover_hand_computed_areas() {
     ];
     for &(name, vertices, cells) in cases {
         assert_coverages(name, &Polygon::new(vertices.iter().copied()), cells);
-    }
-}
-
-/// Records the edges that are drawn.
-struct Drawn(Vec<[Vertex; 2]>);
-
-impl Pen<f64> for Drawn {
-    fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
-        self.0.push([(from.x, from.y), (to.x, to.y)]);
-    }
-    fn ellipse(&mut self, _: &Ellipse<f64>, _: Side) {}
-}
-
-#[test]
-fn polygons_of_any_size_and_place_may_run_in_either_direction() {
-    let drawn = |corners: [Vertex; 3]| {
-        let mut drawn = Drawn(Vec::new());
-        Polygon::new(corners).draw(&mut drawn);
-        drawn.0
-    };
-    // Beyond 1e154 products of coordinates overflow; near 1e9 those of a small triangle are only rounding errors.
-    for size in [1e-300, 1e-200, 1.0, 1e154, 1e200, f64::MAX] {
-        for place in [0.0, -size, 1e9] {
-            let (near, far) = (place, place + size);
-            let [a, b, c] = [(near, near), (far, near), (far, far)];
-            if near == far {
-                continue;
-            }
-            assert_eq!(drawn([a, b, c]), [[c, a], [a, b], [b, c]], "{size} {place}");
-            assert_eq!(drawn([c, b, a]), [[c, a], [a, b], [b, c]], "{size} {place}");
-        }
     }
 }
 

@@ -3,10 +3,10 @@
 //! A taxel whose coverage is exactly the threshold is active. Hardly any number here has an exact binary form, so
 //! plain rounding decides about half of these cases wrongly. The near misses fall short by 1e-9 to 1e-18 of a cell.
 
-use taxel_core::geometry::{Ellipse, Pen, Point, Polygon, Real, Side, Solid};
+use taxel_core::geometry::{Ellipse, Pen, Point, Real, Side, Solid};
 use taxel_core::touch::Plane;
 
-use crate::common::{figure, picture, sensor};
+use crate::common::{Polygon, figure, picture, sensor};
 
 /// The number of columns and of rows of the sensor, which has room for the circle of radius 13.
 const SIDE: u8 = 32;

@@ -4,7 +4,7 @@ pub use crate::description::{
     DESCRIPTORS, Description, Region, RegionKind, each_region, main_region, regions,
 };
 pub use crate::figure::{Figure, FigureKind};
-pub use crate::geometry::{Polygon, Solid};
+pub use crate::geometry::Solid;
 pub use crate::imprint::Imprint;
 pub use crate::parameter::{Parameter, ParameterError};
 pub use crate::picture::Picture;

@@ -2,12 +2,11 @@
 
 use proptest::prelude::*;
 use taxel_core::figure::{Figure, FigureKind};
-use taxel_core::geometry::Polygon;
 use taxel_core::imprint::Imprint;
 use taxel_core::parameter::Parameter;
 use taxel_core::sensor::{MAX_SIDE, Sensor};
 
-use crate::common::size;
+use crate::common::{Polygon, size};
 
 pub(crate) fn hundredths(value: i32) -> f64 {
     f64::from(value) / 100.0

@@ -123,17 +123,6 @@ impl Frame {
         self.values.resize(size.cells(), f64::NAN);
     }
 
-    /// Copies another frame into this one, reusing its memory.
-    pub fn copy_from(&mut self, other: &Self) {
-        let mut values = std::mem::take(&mut self.values);
-        values.clone_from(&other.values);
-        *self = Self {
-            values,
-            label: other.label.clone(),
-            ..*other
-        };
-    }
-
     /// Returns the number of columns and rows.
     pub fn size(&self) -> FrameSize {
         self.size
@@ -329,17 +318,6 @@ pub(super) fn check_size(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_copy_equals_the_frame() {
-        let mut frame = Frame::new(FrameSize::of(2, 1));
-        frame.values_mut().copy_from_slice(&[1.0, 2.0]);
-        (frame.number, frame.channel, frame.label) = (3, 4, Some("washer M8".into()));
-        frame.time = Some(0.5);
-        let mut copy = Frame::new(FrameSize::of(5, 5));
-        copy.copy_from(&frame);
-        assert_eq!(format!("{copy:?}"), format!("{frame:?}"));
-    }
 
     #[test]
     fn a_frame_takes_as_many_values_as_it_has_cells() -> Result<(), Box<dyn std::error::Error>> {

@@ -4,7 +4,7 @@
 //! This room knows nothing about sensors, figures or imprints.
 //!
 //! A shape is any type that implements [`Solid`]: it draws its boundary with a [`Pen`], in numbers of any precision
-//! ([`Real`]). For vertices of your own, use [`Polygon`].
+//! ([`Real`]).
 
 mod real;
 
@@ -14,7 +14,7 @@ mod ellipse;
 
 mod overlap;
 
-pub use outline::{Ellipse, Extent, Pen, Point, Polygon, Side, Solid, Turn};
+pub use outline::{Ellipse, Extent, Pen, Point, Side, Solid, Turn};
 pub(crate) use outline::{MOST_CORNERS, Moving, RegularPolygon};
 pub use overlap::cell_area;
 pub(crate) use overlap::{Drawn, Overlap, row_areas};

@@ -178,77 +178,10 @@ impl<T: Real, P: Pen<T>> Pen<T> for Moving<'_, T, P> {
 /// assert!((covered - (36.0 - std::f64::consts::PI * 1.5 * 1.5)).abs() < 1e-9);
 /// ```
 ///
-/// For an outline of vertices, use [`Polygon`].
+/// For rings of polygons and ellipses, use [`Outline`](crate::outline::Outline).
 pub trait Solid {
     /// Draws the whole boundary. Implementations convert the numbers of the shape with [`Real::decimal`].
     fn draw<T: Real>(&self, pen: &mut impl Pen<T>);
-}
-
-/// A simple polygon with at least three vertices, in either sense of rotation.
-///
-/// With fewer vertices, or with all of them on a line, it bounds nothing. Its edges should not cross each other: a part
-/// that the edges run around twice counts twice.
-///
-/// ```
-/// use taxel_core::prelude::*;
-/// use taxel_core::geometry::Extent;
-///
-/// let kite = Polygon::new([(3.0, 1.0), (1.0, 4.0), (3.0, 9.0), (5.0, 4.0)]);
-/// assert_eq!(Extent::of(&kite), Some(Extent { left: 1.0, top: 1.0, right: 5.0, bottom: 9.0 }));
-/// let mut plane = Plane::new(Sensor::default());
-/// let imprint = plane.touch(&kite);
-/// assert!(imprint.get(2, 4) && !imprint.get(1, 1));
-/// let covered: f64 = plane.coverages().values().iter().sum();
-/// assert!((covered - 16.0).abs() < 1e-9);
-/// ```
-#[derive(Clone, Debug, PartialEq)]
-pub struct Polygon {
-    vertices: Vec<(f64, f64)>,
-}
-
-impl Polygon {
-    /// Creates the polygon through the vertices, in order. If a coordinate is not finite, the polygon bounds nothing:
-    /// any other number in its place would make a wrong imprint that looks right.
-    pub fn new(vertices: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        let mut vertices: Vec<_> = vertices.into_iter().collect();
-        if !vertices.iter().all(|(x, y)| x.is_finite() && y.is_finite()) {
-            vertices.clear();
-        }
-        if turns_left(&vertices) {
-            vertices.reverse();
-        }
-        Self { vertices }
-    }
-}
-
-fn turns_left(vertices: &[(f64, f64)]) -> bool {
-    let Some(&first) = vertices.first() else {
-        return false;
-    };
-    // Vertices are taken relative to the first one, since rounding errors would be too large for a polygon far away,
-    // and in units of the polygon's size, since products could overflow. Differences of halves cannot overflow.
-    let way = |&(x, y): &(f64, f64)| (x / 2.0 - first.0 / 2.0, y / 2.0 - first.1 / 2.0);
-    let ways = || vertices.iter().map(way);
-    let size = ways().fold(f64::MIN_POSITIVE, |size, (x, y)| {
-        size.max(x.abs()).max(y.abs())
-    });
-    let corners = ways().map(|(x, y)| (x / size, y / size));
-    let next = corners.clone().cycle().skip(1);
-    let products = corners.zip(next).map(|(a, b)| a.0 * b.1 - b.0 * a.1);
-    products.sum::<f64>() < 0.0
-}
-
-impl Solid for Polygon {
-    fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
-        let point = |&(x, y): &(f64, f64)| Point::new(T::decimal(x), T::decimal(y));
-        let Some(mut from) = self.vertices.last().map(point) else {
-            return;
-        };
-        for to in self.vertices.iter().map(point) {
-            pen.edge(from, to);
-            from = to;
-        }
-    }
 }
 
 /// The smallest upright rectangle around a shape; in cell sides, in the frame of the plane.
@@ -357,18 +290,5 @@ impl RegularPolygon {
             corners,
             inradius,
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_polygon_with_a_coordinate_that_is_not_finite_bounds_nothing() {
-        assert_eq!(
-            Extent::of(&Polygon::new([(1.0, 1.0), (f64::NAN, 4.0), (5.0, 4.0)])),
-            None
-        );
     }
 }
