@@ -10,7 +10,6 @@ use taxel_core::lock::locked;
 use taxel_core::parameter::Parameter;
 use taxel_core::sensor::Sensor;
 use taxel_core::source::Source;
-use taxel_files::acquire::FrameSource;
 use taxel_files::formats::file::system_reason;
 use taxel_files::formats::recording::may_be_recording;
 use taxel_files::formats::{Content, MAX_DRAWING_BYTES, read_content};
@@ -34,7 +33,6 @@ pub(crate) fn watchable(
     if let Some(reason) = source.unused_baud().filter(|_| request.baud_named) {
         return Err(format!("--baud has no effect {reason}"));
     }
-    refuse_imprint(&source, &request)?;
     if let Some(choice) = request.model.clone().filter(ModelChoice::is_read) {
         let choice = models.locate(choice).map_err(|error| error.to_string())?;
         Arc::make_mut(&mut request).model = Some(choice);
@@ -121,23 +119,6 @@ fn beginning(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?.take(MOST + 1).read_to_end(&mut bytes)?;
     Ok(bytes)
-}
-
-fn refuse_imprint(source: &FrameSource, request: &WatchRequest) -> Result<(), String> {
-    let (FrameSource::File(path), None) = (source, request.options.format) else {
-        return Ok(());
-    };
-    // What cannot be read is reported when the file is watched.
-    let bytes = beginning(path)
-        .ok()
-        .filter(|bytes| !may_be_recording(bytes));
-    let what = match bytes.map(|bytes| read_content(&bytes)) {
-        Some(Ok(Content::Shape(_))) => "a shape",
-        Some(Ok(Content::Imprint(_))) => "an imprint",
-        _ => return Ok(()),
-    };
-    let name = source.name();
-    Err(format!("{name}: {what}, not frames; :open opens it"))
 }
 
 /// Writes a file. Returns its absolute path; None if it exists and is to be kept.

@@ -37,7 +37,9 @@ pub mod matrix;
 
 pub mod form;
 
-pub mod shapes;
+pub(crate) mod library;
+
+pub(crate) mod list;
 
 pub mod prompt;
 

@@ -87,17 +87,6 @@ fn files_that_cannot_be_opened_or_written_are_reported() {
 }
 
 #[test]
-fn an_imprint_or_a_shape_is_not_watched_as_frames() {
-    for (file, what) in [
-        ("examples/touch.txt", "an imprint"),
-        ("library/gear.json", "a shape"),
-    ] {
-        let refused = format!("! {file}: {what}, not frames; :open opens it");
-        shows(&format!(":watch {file}<Enter>"), &[&refused]);
-    }
-}
-
-#[test]
 fn paths_are_completed() {
     let folder = folder();
     let place = folder.path().to_str().expect("a name in ASCII").to_owned();

@@ -286,21 +286,6 @@ fn quitting_asks_if_work_would_be_lost() {
     }
 }
 
-#[test]
-fn nearly_empty_and_full_matrices_have_no_impossible_numbers() {
-    let counts = ["NA     0 ", "NumX   0 ", "Area   0 "];
-    shows("", &counts);
-    shows("", &["CG     –", "P      –", "F      –"]);
-    shows(
-        "<Space>",
-        &["P      0 ", "F      0 ", "Round  –", "dir    –"],
-    );
-    shows(
-        "fr<Tab>16<Tab>16<Tab>0<Tab>0<Enter>",
-        &["NA     256", "Fill   100 %"],
-    );
-}
-
 /// Every row of the table of keys is in the help of its place, and fits on its line.
 #[test]
 fn every_key_is_in_help() {

@@ -200,7 +200,7 @@ pub static PLACES: &[KeyPlace] = &[
         ("<Space>", &[&FREEZE], "freeze", "freeze this frame, or follow the source again"),
         ("<Left><Right><Up><Down>", &[&SCROLL_UP, &SCROLL_DOWN, &SCROLL_UP, &SCROLL_DOWN],
             "scrub", "to an earlier, a later frame"),
-        ("<PageUp><PageDown>", &[&SECOND_BACK, &SECOND_ON], "", "a second back, forward"),
+        ("<PageUp><PageDown>", &[&PAGE_UP, &PAGE_DOWN], "", "ten frames back, forward"),
         ("[]", &[&PREVIOUS_TOUCH, &NEXT_TOUCH], "", "to where the previous, the next touch begins"),
         ("<Home><End>", &[&FIRST, &LAST], "", "the oldest frame; follow the source"),
         ("<S-Left><S-Right><S-Up><S-Down>", &[&WINDOW_LEFT, &WINDOW_RIGHT, &WINDOW_UP, &WINDOW_DOWN],

@@ -12,7 +12,7 @@ use crate::tui::live::names::ShapeNames;
 use crate::tui::live::trend::Trend;
 use crate::tui::live::{
     FeedStatus, FrameBatch, HeatLayer, LiveReading, ShadeRange, SourceGaps, SourceState,
-    WatchRequest, threshold,
+    WatchRequest, other_unit, progress_text, stepped_rule,
 };
 
 /// The most frames that a tare by key is made of.
@@ -100,10 +100,7 @@ impl Live {
             }
             (Some(error), _) => format!("no imprint: {error}"),
             (None, Some(progress)) if self.reading.is_some() => {
-                format!(
-                    "no imprint before the tare: {}",
-                    threshold::progress_text(progress)
-                )
+                format!("no imprint before the tare: {}", progress_text(progress))
             }
             (None, _) => NO_FRAME.to_owned(),
         }
@@ -307,7 +304,7 @@ impl Live {
     /// set. A threshold out of range changes nothing.
     pub fn step_threshold(&mut self, direction: i8) {
         let (rule, top) = (self.pipeline.processing.rule, self.range.tared_top());
-        if let Ok(rule) = threshold::step(rule, direction, top) {
+        if let Ok(rule) = stepped_rule(rule, direction, top) {
             self.choose(rule);
         }
     }
@@ -317,7 +314,7 @@ impl Live {
         let largest = self.reading.as_ref().and_then(|reading| reading.tared_max);
         let largest = largest.filter(|&largest| largest > 0.0);
         let largest = largest.unwrap_or(self.range.tared_top());
-        if let Ok(other) = threshold::other_unit(self.pipeline.processing.rule, largest) {
+        if let Ok(other) = other_unit(self.pipeline.processing.rule, largest) {
             self.choose(other);
         }
     }
@@ -344,29 +341,6 @@ impl Live {
     pub fn scrub(&mut self, by: i64) -> bool {
         let shown = self.history.shown();
         shown.is_some_and(|(number, _)| self.stay_at(number.saturating_add_signed(by)))
-    }
-
-    /// Goes on or back by at least a second, or by ten frames if they have no times.
-    pub fn scrub_second(&mut self, by: i64) -> bool {
-        let Some((shown, frame)) = self.history.shown() else {
-            return false;
-        };
-        let Some(now) = frame.time else {
-            return self.scrub(10 * by);
-        };
-        let is_there = |number: &u64| {
-            let other = self.history.get(*number).and_then(|other| other.time);
-            other.is_some_and(|other| (other - now).abs() >= 1.0)
-        };
-        let numbers = self.history.numbers();
-        let found = if by < 0 {
-            let mut before = (numbers.start..shown.min(numbers.end)).rev();
-            before.find(is_there).unwrap_or(numbers.start)
-        } else {
-            let mut after = shown + 1..numbers.end;
-            after.find(is_there).unwrap_or(numbers.end)
-        };
-        self.stay_at(found)
     }
 
     /// Goes on or back to the next frame in which a touch begins; false if there is none.

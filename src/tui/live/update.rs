@@ -17,7 +17,7 @@ use crate::tui::jobs::answer;
 use crate::tui::keys::{Arrow, Context, action};
 use crate::tui::live::{
     FrameBatch, HeatLayer, Live, LiveMessage, NO_FRAME, NamedSource, READ_ONCE, WatchRequest,
-    names, reading, source, threshold, view,
+    names, reading, source, view,
 };
 use crate::tui::prompt::CommandDialog;
 
@@ -40,7 +40,7 @@ fn set_threshold(app: &mut App, rule: Rule) {
         return refuse(app, NO_SOURCE);
     };
     page.choose(rule);
-    let value = threshold::text(rule, &page.unit());
+    let value = reading::rule_text(rule, &page.unit());
     let text = format!("{}: threshold {value}", page.request.name());
     inform(app, text);
 }
@@ -126,7 +126,6 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) {
         LiveMessage::Threshold(direction) => page.step_threshold(*direction),
         LiveMessage::Percent => page.switch_unit(),
         LiveMessage::Freeze => page.freeze(),
-        LiveMessage::Second(by) => go(app, page, *by, "frame", Live::scrub_second),
         LiveMessage::Touch(by) => go(app, page, *by, "touch", Live::scrub_touch),
         LiveMessage::NextLayer => next_layer(app, page),
         LiveMessage::Plot => page.plotted ^= 1,

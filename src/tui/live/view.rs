@@ -21,7 +21,7 @@ use taxel_files::formats::value::{self, counted, fitting, grouped, measured};
 use crate::tui::app::{App, Canvas, Flow, Message, Page, Place, Placed, Wheel};
 use crate::tui::keys::{Arrow, Context, Keymap, action};
 use crate::tui::live::heat::{self, HeatMap, LivePanes, cells, scale};
-use crate::tui::live::threshold::{self, progress_text};
+use crate::tui::live::reading::{progress_text, rule_text};
 use crate::tui::live::update::in_live;
 use crate::tui::live::{HeatLayer, Live, LiveMessage, LiveReading, NO_FRAME, SourceState, trend};
 use crate::tui::widget::{Role, Theme, write};
@@ -257,7 +257,7 @@ fn threshold(live: &Live, keymap: &Keymap) -> String {
         let key = keymap.label(Context::Live, &action::THRESHOLD_UP);
         return format!("none; {key} sets one");
     };
-    let text = threshold::text(set.rule, &live.unit());
+    let text = rule_text(set.rule, &live.unit());
     match set.from {
         RuleOrigin::File => format!("{text}, of the file"),
         RuleOrigin::Flag | RuleOrigin::Settings | RuleOrigin::Key => text,

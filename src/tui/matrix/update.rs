@@ -30,10 +30,10 @@ use crate::tui::help::Help;
 use crate::tui::jobs::answer;
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::Context;
+use crate::tui::library;
+use crate::tui::list::open_list;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::prompt::{CommandDialog, NameDialog};
-use crate::tui::shapes::library;
-use crate::tui::shapes::list::open_list;
 use crate::tui::widget::write::around;
 use crate::tui::{explore, live, recognise};
 

@@ -33,8 +33,8 @@ use crate::tui::explore::ExploreMessage;
 use crate::tui::explore::work::explored;
 use crate::tui::files::FileToOpen;
 use crate::tui::keys::keymap::Context;
-use crate::tui::live::message::{LiveMessage, NamedSource};
 use crate::tui::live::state::Live;
+use crate::tui::live::{LiveMessage, NamedSource};
 use crate::tui::recognise::RecogniseMessage;
 
 #[derive(Debug, Parser)]

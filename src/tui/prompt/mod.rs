@@ -17,12 +17,12 @@ use crate::tui::files;
 use crate::tui::jobs::answer;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::{Context, Keymap};
+use crate::tui::library::sentence;
 use crate::tui::prompt::commands::{Names, begun, complete, offers, read, wants_names};
-use crate::tui::shapes::library::sentence;
 use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, narrow};
-use crate::tui::{live, matrix, shapes};
+use crate::tui::{library, live, matrix};
 
 pub mod commands;
 
@@ -48,7 +48,7 @@ impl Page for NameDialog {
         match (message, Name::new(self.field.text())) {
             (Message::Accept, Ok(name)) => {
                 let quits = self.quits;
-                return Flow::ask(move |app| shapes::library::save(app, name, quits));
+                return Flow::ask(move |app| library::save(app, name, quits));
             }
             (Message::Accept, Err(error)) => refuse(app, error.to_string()),
             _ => _ = self.field.take(message),

@@ -107,40 +107,6 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_edited_at_its_cursor() {
-        let (left, typed) = (Message::Choose(Arrow::Left), Message::Type('x'));
-        let erase = |what| Message::Erase(what);
-        assert_eq!(after(&[]), ("abc".to_owned(), 3));
-        assert_eq!(
-            after(&[left.clone(), typed.clone()]),
-            ("abxc".to_owned(), 3)
-        );
-        assert_eq!(
-            after(&[Message::ToEdge(Endpoint::First), erase(Erase::Under)]),
-            ("bc".to_owned(), 0)
-        );
-        assert_eq!(after(&[left, erase(Erase::Before)]), ("ac".to_owned(), 1));
-        assert_eq!(after(&[erase(Erase::All), typed]), ("x".to_owned(), 1));
-    }
-
-    #[test]
-    fn typing_replaces_the_text_of_a_field_only_until_its_cursor_is_moved() {
-        for (first, expected) in [
-            (None, "x"),
-            (Some(Message::ToEdge(Endpoint::First)), "xabc"),
-            (Some(Message::ToEdge(Endpoint::Last)), "abcx"),
-            (Some(Message::Choose(Arrow::Left)), "abxc"),
-        ] {
-            let mut field = TextField::new("abc", 6);
-            field.enter();
-            for message in first.into_iter().chain([Message::Type('x')]) {
-                field.take(&message);
-            }
-            assert_eq!(field.text(), expected);
-        }
-    }
-
-    #[test]
     fn a_field_limits_its_length_and_drops_control_characters() {
         let pasted = Message::Paste("  d\u{1b}\te f g\n".to_owned());
         assert_eq!(after(&[pasted]), ("abcd e".to_owned(), 6));

@@ -20,30 +20,6 @@ fn session_on(folder: &Path, keys: &str) -> Session {
 }
 
 #[test]
-fn a_shape_is_saved_and_loaded() {
-    let mut session = session("f<Enter>smine");
-    shows(&session, &["Save as: mine"]);
-    then(
-        &mut session,
-        "<Enter>",
-        &["saved as mine", "· mine\n", "\nellipse rx 4.00"],
-    );
-    then(&mut session, "n", &["empty"]);
-    then(
-        &mut session,
-        "lmine<Enter>",
-        &[
-            "mine loaded",
-            "· mine\n",
-            "\nellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0°",
-            "NA 52 in all",
-        ],
-    );
-    press(&mut session, "q");
-    assert!(session.app().ended(), "what is loaded is saved");
-}
-
-#[test]
 fn saving_over_another_shape_asks() {
     let mut session = session("<Space>sone<Enter>n<Space><Right><Space>sone<Enter>");
     shows(&session, &["\"one\" already exists. Replace it? (y/n)"]);

@@ -92,28 +92,6 @@ fn records(path: &Path) -> Option<usize> {
     array::records(&fs::read(path).ok()?)
 }
 
-#[test]
-fn a_key_starts_and_ends_a_recording() {
-    let Some(mut watched) = Watched::start() else {
-        return;
-    };
-    watched.sends(0..3);
-    watched.program.shows("frame 2");
-    let file = watched.records();
-    watched.sends(3..23);
-    watched.program.shows("frame 22");
-    watched.program.types(b"m");
-    watched.program.shows("frame 22: marked");
-    watched.program.types(b"r");
-    watched.program.shows("touch-1.npy: 20 frames recorded");
-    assert_eq!(records(&file), Some(20));
-    let beside = fs::read_to_string(file.with_extension("json")).expect("it is there");
-    let beside: serde_json::Value = serde_json::from_str(&beside).expect("JSON");
-    assert_eq!(beside["marks"][0]["number"], 22, "{beside}");
-    assert_eq!(beside["rule"]["at_least"], 9, "{beside}");
-    watched.ends();
-}
-
 /// A limit of the system acts as a full disk.
 const FULL: &str = "trap '' XFSZ; ulimit -f 9;";
 

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use taxel::tui::app::{App, Message, Mouse, MouseKind, Options};
 use taxel::tui::jobs::Jobs;
 use taxel::tui::keys::{Arrow, Context, Key, Keymap, parse};
-use taxel::tui::live::message::{LiveMessage, NamedSource};
+use taxel::tui::live::{LiveMessage, NamedSource};
 use taxel::tui::prompt::commands::{complete, read as read_command};
 use taxel::tui::script::Session;
 use taxel::tui::script::runner::{ScriptOptions, Shown, run};

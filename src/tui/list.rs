@@ -27,7 +27,7 @@ use crate::tui::grid::draw_thumbnail;
 use crate::tui::jobs::{Jobs, answer};
 use crate::tui::keys::action;
 use crate::tui::keys::keymap::{Context, Keymap};
-use crate::tui::shapes::library::{named, sentence};
+use crate::tui::library::{named, sentence};
 use crate::tui::widget::rows::{ListRows, moved};
 use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
