@@ -53,7 +53,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) {
         Message::Copy(what) => copy(app, what),
         Message::Explore(asked) => explore::work::act(app, asked),
         Message::Live(asked) => live::update::act(app, &asked),
-        Message::Recognise(asked) => recognise::page::act(app, asked),
+        Message::Recognise(asked) => recognise::page::act(app, &asked),
         Message::SaveAs(name) => library::save(app, name, false),
         Message::Named(purpose, name) => library::named(app, purpose, name),
         Message::Restore(name) => library::restore(app, name),

@@ -177,9 +177,9 @@ impl Page for RecognisePage {
         if let Some(preparing) = &mut page.preparing {
             preparing.then_touches = false;
         }
-        match message.clone() {
+        match message {
             Message::Recognise(asked) => carry_out(app, asked, true),
-            message => matrix::update::act(app, message),
+            message => matrix::update::act(app, message.clone()),
         }
         Flow::Stay
     }
@@ -204,17 +204,17 @@ fn is_open(app: &App) -> bool {
 
 /// Carries out what a key or a command asks for. A command may come while the page is closed; its result must be
 /// visible.
-pub(crate) fn act(app: &mut App, asked: RecogniseMessage) {
+pub(crate) fn act(app: &mut App, asked: &RecogniseMessage) {
     let is_open = is_open(app);
     carry_out(app, asked, is_open);
 }
 
-fn carry_out(app: &mut App, asked: RecogniseMessage, is_open: bool) {
+fn carry_out(app: &mut App, asked: &RecogniseMessage, is_open: bool) {
     if let RecogniseMessage::Seed(seed) = asked {
-        app.recognition.random = Pcg64::seed_from_u64(seed);
+        app.recognition.random = Pcg64::seed_from_u64(*seed);
         return inform(app, format!("random touches begin with the seed {seed}"));
     }
-    let choice = match &asked {
+    let choice = match asked {
         RecogniseMessage::Choose(choice) => Some(choice.clone()),
         _ => None,
     };
@@ -222,14 +222,14 @@ fn carry_out(app: &mut App, asked: RecogniseMessage, is_open: bool) {
         app.open(RecognisePage);
         app.shows_panel = true;
     }
-    if choice.is_some() || asked == RecogniseMessage::Open || !is_open {
+    if choice.is_some() || *asked == RecogniseMessage::Open || !is_open {
         prepare(app, choice, !is_open);
     }
     match asked {
         RecogniseMessage::Keep => keep(app),
         RecogniseMessage::Forget => forget(app),
         RecogniseMessage::Terms(terms) => {
-            app.recognition.terms = terms;
+            app.recognition.terms = *terms;
             app.recognition.ask();
         }
         RecogniseMessage::Touch => {
@@ -296,7 +296,7 @@ fn take_model(app: &mut App, trained: Result<Arc<TrainedModel>, String>) {
             page.ask();
             let has_keys = app.top_mut::<RecognisePage>().is_some();
             if preparing.then_touches && has_keys {
-                act(app, RecogniseMessage::Touch);
+                act(app, &RecogniseMessage::Touch);
             }
         }
         Err(reason) => {
