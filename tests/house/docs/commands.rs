@@ -1,10 +1,9 @@
 //! The commands that the documents show.
 //!
-//! A `console` block is run in a folder of its page that holds the samples of the guide. `$` begins a line for the
-//! shell and `>` continues it. What the lines print follows them; a block may also leave all of it out. A `python`
-//! block is run there, too, if Python has the modules that it imports, and a `taxel` block is a script for the screen.
-//! A `bash` block is run without a look at what it prints. In an `sh` block is what no test can run, such as a sensor on
-//! a serial line: it is only asked whether `taxel` takes the flags.
+//! Blocks are run in a folder of their page that holds the samples of the guide. In a `console` block, what a line
+//! `$ …` prints follows it; of a `bash` block, what it prints is left out. A `python` block is run if Python has the
+//! modules that it imports; a `taxel` block is a script for the screen. In an `sh` block is what no test can run, such as
+//! a sensor on a serial line: it is only asked whether `taxel` takes the flags.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -100,24 +99,18 @@ fn furnished(folder: &Path) -> &Path {
     folder
 }
 
-/// Returns the block with the output of each line, if it shows any.
+/// Returns the block with the present output of its lines.
 fn console(folder: &Path, block: &str) -> String {
-    let is_typed = |line: &str| line.starts_with("$ ") || line.starts_with("> ");
-    let shows = !block.lines().all(is_typed);
-    let mut lines = block.lines().filter(|line| is_typed(line)).peekable();
     let mut text = String::new();
-    while let Some(first) = lines.next() {
-        let mut typed = vec![first];
-        while let Some(more) = lines.next_if(|line| line.starts_with("> ")) {
-            typed.push(more);
-        }
-        let command: Vec<&str> = typed.iter().map(|line| &line[2..]).collect();
+    for line in block.lines() {
+        let Some(command) = line.strip_prefix("$ ") else {
+            continue;
+        };
         // Later lines may need what this one writes, so the block stays as it is.
-        let Some(printed) = printed(folder, &command.join("\n")) else {
+        let Some(printed) = printed(folder, command) else {
             return block.to_owned();
         };
-        let printed = printed.lines().filter(|_| shows);
-        for line in typed.into_iter().chain(printed) {
+        for line in std::iter::once(line).chain(printed.lines()) {
             text += line.trim_end();
             text.push('\n');
         }
