@@ -56,26 +56,16 @@ fn sizes_and_pose_have_no_defaults() {
 
 #[test]
 fn bad_lines_are_answered_in_their_places() {
-    let lines: [&[u8]; 20] = [
+    let lines: [&[u8]; 10] = [
         POINT.as_bytes(),
         b"nonsense",
         b"  \r",
         b"{\"figure\":\"hexagon\",\"side\":99,\"x0\":2,\"y0\":2,\"angle\":0}",
         b"{\"picture\":\"gasket\",\"x0\":2,\"y0\":2,\"angle\":0}",
         b"{\"figure\":\"\xff\"}",
-        b"[\"##\"]",
-        b"",
         b"{\"figure\":\"\\u001b\xc3\xa9\"}",
-        b"{\"picture\":[\"#\"],\"x0\":0,\"y0\":0,\"angle\":0,\"zoom_x\":1,\"zoom_y\":1,\"sensor\":{\"columns\":1,\"rows\":1}}\r",
         b"{\"imprint\":[\"##\",\"#\"]}",
-        b"{\"imprint\":[\"#\"],\"imprint\":[\"#\"]}",
-        b"{\"figure\":\"hexagon\",\"side\":3,\"x0\":2,\"y0\":2,\"angle\":0,\"thickness\":NaN}",
-        b"{\"frame\":[[1]],\"least\":-1}",
-        b"{\"imprint\":\"washer\"}",
         b"{\"figure\":\"hexagon\",\"sied\":3}",
-        b"{\"figure\":\"circle\",\"radius_x\":3}",
-        b"{\"imprint\":[\"#\"],\"sensor\":{\"colums\":1}}",
-        b"{\"imprint\":[\"#\"],\"sensor\":{\"\x1bcolour\":1}}",
         POINT.as_bytes(),
     ];
     let run = taxel("batch", lines.join(&b'\n'));
@@ -86,30 +76,15 @@ fn bad_lines_are_answered_in_their_places() {
         error("4: side: 99 is above 16 (allowed: above 0, up to 16)"),
         error("5: picture: no shape named \\\"gasket\\\""),
         error("6: column 12: invalid unicode code point"),
-        error("7: not a JSON object"),
         error(
-            "9: column 21: figure \\\"\\\\u{1b}\\u00e9\\\" is unknown, expected one of ellipse, rectangle, triangle, pentagon, hexagon, heptagon, octagon",
+            "7: column 21: figure \\\"\\\\u{1b}\\u00e9\\\" is unknown, expected one of ellipse, rectangle, triangle, pentagon, hexagon, heptagon, octagon",
         ),
-        POINT_ANSWER.to_owned(),
-        error("11: column 22: row 2: found 1 taxel, expected 2 as in the first row"),
-        error("12: column 26: duplicate key `imprint`"),
-        error("13: column 66: expected value"),
-        error(
-            "14: column 25: invalid value: integer `-1`, expected a whole number from 1 to 4294967295",
-        ),
-        error("15: column 19: invalid type: string \\\"washer\\\", expected a sequence"),
-        error("16: column 26: unknown key \\\"sied\\\"; did you mean \\\"side\\\"?"),
-        error(
-            "17: column 18: figure \\\"circle\\\" is unknown, expected one of ellipse, rectangle, triangle, pentagon, hexagon, heptagon, octagon; a circle is an ellipse with equal radii",
-        ),
-        error("18: column 35: unknown key \\\"colums\\\"; did you mean \\\"columns\\\"?"),
-        error(
-            "19: column 29: control character (\\\\u0000-\\\\u001F) found while parsing a string",
-        ),
+        error("8: column 22: row 2: found 1 taxel, expected 2 as in the first row"),
+        error("9: column 26: unknown key \\\"sied\\\"; did you mean \\\"side\\\"?"),
         POINT_ANSWER.to_owned(),
     ];
     assert_eq!(run.stdout, expected.concat());
-    assert_eq!(run.stderr, "error: 15 of 18 lines could not be answered\n");
+    assert_eq!(run.stderr, "error: 7 of 9 lines could not be answered\n");
     assert_eq!(run.status, Some(1));
 }
 
@@ -217,29 +192,18 @@ fn a_frame_with_a_threshold_is_described() {
         "{\"frame\":[[0,30],[null,31]],\"at_least\":30}\n",
         "{\"frame\":[[0,30],[null,31]]}\n",
         "{\"frame\":[[0,30]],\"at_least\":30,\"imprint\":[\"#\"]}\n",
-        "{\"imprint\":[\"#\"],\"least\":2}\n",
-        "{\"frame\":[[0,30]],\"at_least\":30,\"sensor\":{\"columns\":2,\"rows\":1}}\n",
-        "{\"frame\":[[0,30]],\"deviations\":1}\n",
-        "{\"frame\":[[0,30]],\"at_least\":30,\"least\":0}\n",
-        "{\"frame\":[[0,30]],\"at_least\":30,\"least\":1.5}\n",
         "{\"frame\":[[0,30]],\"at_least\":30,\"least\":4096}\n",
     );
     let run = taxel("batch", input);
-    let whole = "expected a whole number from 1 to 4294967295\"}";
     for (line, answer) in run.stdout.lines().zip([
         "{\"imprint\":[\".#\",\".#\"],\"na\":2,",
         "no threshold, expected at_least",
         "expected exactly one of the keys",
-        "least: does not belong to",
-        "line 5: sensor: does not belong to \\\"frame\\\"\"}",
-        "unknown key `deviations`, expected one of `name`",
-        whole,
-        whole,
         "{\"imprint\":[\"..\"],\"na\":0,",
     ]) {
         assert!(line.contains(answer), "{line}");
     }
-    assert_eq!(run.stdout.lines().count(), 9);
+    assert_eq!(run.stdout.lines().count(), 4);
 }
 
 /// Python writes `NaN`, although JSON has no such number.
@@ -257,7 +221,4 @@ fn nan_in_a_frame_is_a_missing_cell() {
     );
     let run = taxel("batch", "x\n");
     assert_eq!(run.stderr, "error: 1 of 1 line could not be answered\n");
-    let recognised = |cell: &str| taxel("recognise - --model figures", frame(cell));
-    let run = recognised("NaN");
-    assert_eq!((run.status, &run), (Some(0), &recognised("null")));
 }

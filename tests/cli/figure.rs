@@ -99,21 +99,12 @@ fn wrong_usage_exits_with_status_2() {
             "'--side' does not belong to 'ellipse', which takes --radius-x, --radius-y, --x0, --y0, --angle and --thickness\n",
         ),
         (
-            "figure hexagon --side",
-            "a value is required for '--side <CELLS>'",
-        ),
-        (
             "figure hexagon --side nan",
             "invalid value 'nan' for '--side <CELLS>': not a number\n",
         ),
         (
             "figure hexagon --side 3,5",
             "invalid value '3,5' for '--side <CELLS>': not a number; write 3.5\n",
-        ),
-        ("describe one two", "unexpected argument 'two' found\n"),
-        (
-            "figure hexagon --zoom-x 2",
-            "unexpected argument '--zoom-x' found\n",
         ),
         (
             "--columns 3 figure hexagon",
@@ -149,20 +140,8 @@ fn a_number_out_of_range_exits_with_status_1_and_names_the_range() {
             "--side 99 is above 16 (allowed: above 0, up to 16)",
         ),
         (
-            "figure hexagon --side 17 --rows 8",
-            "--side 17 is above 16 (allowed: above 0, up to 16)",
-        ),
-        (
             "figure ellipse --angle 360",
             "--angle 360 is not below 360 (allowed: 0 to below 360)",
-        ),
-        (
-            "figure ellipse --x0 -16.5",
-            "--x0 -16.5 is below -16 (allowed: -16 to 16)",
-        ),
-        (
-            "figure ellipse --columns 1e3",
-            "--columns 1e3 is above 64 (allowed: 1 to 64)",
         ),
         (
             "batch --columns 2.5",

@@ -352,18 +352,6 @@ fn damaged_models_are_refused() {
     let place = Place::new();
     place.done("model train parts.jsonl --positions 2 --angle 0:330:30 --quiet --out m.npz");
     let good = place.read("m.npz");
-    let numbers = crate::sweep::numbers_in(&good);
-    let mut refusals = 0;
-    for at in (0..good.len()).step_by(good.len() / 60) {
-        let mut bad = good.clone();
-        bad[at] ^= 0x55;
-        fs::write(place.path("bad.npz"), &bad).expect("written");
-        let run = place.run("model confusion bad.npz --json", "");
-        let expected = run.status == Some(1) || !numbers[at] && run.status == Some(0);
-        assert!(expected, "{at}: {:?} {}", run.status, run.stderr);
-        refusals += i32::from(numbers[at]);
-    }
-    assert!(refusals > 30, "{refusals}");
     for bytes in [&b""[..], b"no archive", &good[..good.len() / 2]] {
         fs::write(place.path("bad.npz"), bytes).expect("written");
         let run = place.run("recognise - --model bad.npz", "#\n");

@@ -250,22 +250,6 @@ fn a_named_settings_file_must_exist_and_be_text() {
     told("larger than 64 KiB, the limit for a file of settings");
 }
 
-/// A flag of the screen before a command would have no effect, so it is refused.
-#[test]
-fn flags_of_the_screen_are_refused_before_a_command() {
-    let folder = tempfile::tempdir().expect("a folder");
-    for (line, expected) in [
-        ("--theme light library list", "'--theme'"),
-        ("--columns 8 figure ellipse", "'--columns'"),
-        // The live page is also a screen.
-        ("--no-mouse watch touch.csv", "'--no-mouse'"),
-    ] {
-        let run = run(&mut at_home(line, folder.path()));
-        let is_refused = run.status == Some(2) && run.stderr.contains(expected);
-        assert!(is_refused, "{line}: {}", run.stderr);
-    }
-}
-
 #[test]
 fn settings_for_frames_are_used_unless_flags_override_them() {
     let home = home(FILE);
