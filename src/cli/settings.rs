@@ -419,16 +419,8 @@ impl Settings {
             Some((path, false)) => format!("{} (not there)", path.display()),
             None => "no file".to_owned(),
         };
-        let charset = Charset::current();
-        let mut text = format!("# {}\n", charset.line(&path));
-        for character in toml::to_string(self)?.chars() {
-            if character == '\n' || charset.has(character) {
-                text.push(character);
-            } else {
-                text += &format!("\\U{:08X}", u32::from(character));
-            }
-        }
-        Ok(text)
+        let path = Charset::current().line(&path);
+        Ok(format!("# {path}\n{}", toml::to_string(self)?))
     }
 }
 

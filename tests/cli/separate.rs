@@ -10,7 +10,6 @@ fn sizes_are_answered_in_every_form() {
     let sizes = "rectangles.jsonl --positions 5 --angle 0:350:10 --quiet";
     let lines = [
         format!("{sizes} --scale 1:3:0.5 --want 0.1"),
-        format!("{sizes} --scale 1:3:0.5 --want 0.1 --csv"),
         format!("{sizes} --scale 1:3:0.5 --want 0.9"),
         format!("{sizes} --scale 1 --want 0.9"),
         format!("{sizes} --pitch 0.4:1:0.2 --want 0.1 --export m.svg"),

@@ -1,8 +1,7 @@
-//! Tables: cells in columns and bars for people, records for JSON and CSV.
+//! Tables: cells in columns and bars for people, records for JSON.
 
 use serde::{Serialize, Serializer};
 use serde_json::Value;
-use taxel_files::formats::value::csv_line;
 
 use crate::cli::output::charset::Charset;
 use crate::tui::widget::write::width;
@@ -46,31 +45,13 @@ pub(crate) fn table(rows: &[Vec<String>], left: &[usize]) -> String {
     text
 }
 
-/// Named values, which JSON has as an object and CSV as a line, both in this order.
+/// Named values, which JSON has as an object in this order.
 pub(crate) struct Record<'a, V = Value>(pub(crate) Vec<(&'a str, V)>);
 
 impl<V: Serialize> Serialize for Record<'_, V> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.0.iter().map(|(key, value)| (key, value)))
     }
-}
-
-/// A line of names, then a line for each record. Whole numbers have no point.
-pub(crate) fn csv(records: &[Record]) -> String {
-    let mut text = String::new();
-    for Record(cells) in records {
-        if text.is_empty() {
-            text += &csv_line(cells.iter().map(|(name, _)| *name));
-        }
-        text += &csv_line(cells.iter().map(|(_, value)| match value {
-            Value::String(text) => text.clone(),
-            Value::Number(number) if number.is_f64() => {
-                number.as_f64().unwrap_or_default().to_string()
-            }
-            other => other.to_string(),
-        }));
-    }
-    text
 }
 
 /// Draws a bar for a share, of at most `width` characters. The length is rounded, so a small share may have no bar.

@@ -96,7 +96,7 @@ pub(crate) struct Confusion {
     #[arg(long, value_name = "KEY,...", conflicts_with = "noise")]
     given: Option<GivenDescriptors>,
     /// Choose descriptors one by one until none helps
-    #[arg(long, conflicts_with_all = ["csv", "export"])]
+    #[arg(long, conflicts_with = "export")]
     greedy: bool,
     /// Another way to name shapes: z, knn or template
     #[arg(long, value_name = "NAME", value_parser = one_of::<Classifier, _>(Classifier::ALL.iter().map(|own| own.name())))]
@@ -119,6 +119,9 @@ pub(crate) struct Confusion {
     /// Seed of the random numbers; default 0
     #[arg(long, value_name = "N", value_parser = whole(0_u64..))]
     pub(super) seed: Option<u64>,
+    /// Print the confusion matrix as comma-separated values
+    #[arg(long, conflicts_with_all = ["json", "greedy"])]
+    csv: bool,
     #[command(flatten)]
     pub(super) table: TableFlags,
     #[command(flatten)]
@@ -152,19 +155,20 @@ impl Confusion {
             self.tested(&model, foreign, each, cx)
         } else if let Some(noise) = self.noise.noise {
             let rates = self.noise.rates(noise, &model, &self)?;
-            self.table.give(&rates, cx)
+            self.table.give(&rates, false, cx)
         } else if self.greedy {
             cx.print(&self.chosen(&model))
         } else if let Some(classifier) = self.classifier {
             let reached = self.reached(classifier, &model)?;
             let (own, named) = (&reached.evaluation, NamedBy::Classifier);
-            self.table.give(&Matrix(own, named, Some(&reached)), cx)
+            self.table
+                .give(&Matrix(own, named, Some(&reached)), self.csv, cx)
         } else {
             let (limit, named) = match self.known() {
                 Some(given) => (given.evaluate(&model), NamedBy::Descriptors),
                 None => (Evaluation::of(&model), NamedBy::Imprint),
             };
-            self.table.give(&Matrix(&limit, named, None), cx)
+            self.table.give(&Matrix(&limit, named, None), self.csv, cx)
         }
     }
 
@@ -172,7 +176,8 @@ impl Confusion {
     fn check(&self) -> Result<(), Failure> {
         let is = |one| self.classifier == Some(one);
         let (no_knn, is_template) = (!is(Classifier::Knn), is(Classifier::Template));
-        let none_drawn = self.test.is_none() && self.noise.noise.is_none() && no_knn;
+        let is_curve = self.test.is_none() && self.noise.noise.is_some();
+        let none_drawn = self.test.is_none() && !is_curve && no_knn;
         let without = "without --test, --noise or --classifier knn, which draw touches";
         let given = self.given.as_ref();
         let known =
@@ -201,6 +206,11 @@ impl Confusion {
             ),
             ("seed", self.seed.is_some() && none_drawn, without),
             ("round", unknown, "for what --given does not name"),
+            (
+                "csv",
+                self.csv && is_curve,
+                "with --noise but without --test",
+            ),
         ];
         if self.test.is_some() && self.noise.noise.is_some_and(|noise| noise.count() > 1) {
             let text = "--noise: with --test, expected one probability, not a range";
@@ -272,7 +282,8 @@ impl Confusion {
             touches.answer(model, &answer, progress)
         })?;
         let trial = &trial;
-        self.table.give(&TrialReport { trial, each, seed }, cx)
+        let report = TrialReport { trial, each, seed };
+        self.table.give(&report, self.csv, cx)
     }
 
     /// The descriptors that are known instead of the imprint, if only some are.
@@ -381,9 +392,9 @@ impl Table for Matrix<'_> {
         text + &classifier.map_or(String::new(), based_on)
     }
 
-    fn csv(&self) -> String {
+    fn csv(&self) -> Option<String> {
         let labels = &self.0.labels;
-        matrix_csv(labels, labels, self.0.confusion.rows())
+        Some(matrix_csv(labels, labels, self.0.confusion.rows()))
     }
 
     fn json(&self) -> String {

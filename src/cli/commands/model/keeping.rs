@@ -132,36 +132,21 @@ pub(super) fn card(model: &Model, limit: &Evaluation) -> Value {
 
 pub(super) const LIST_EXAMPLES: &str = "\
 Your models are files in the folder 'models' of the library. The built-in ones
-are trained when first used; --json leaves them out.
+are trained when first used.
 
 Examples:
-  taxel model list --json";
+  taxel model list";
 
-/// If a model cannot be read, the reason takes the place of the numbers. The JSON lists only models in files.
-pub(super) fn list(json: bool, cx: &Context) -> Result<(), Failure> {
-    if !json {
-        for own in ModelChoice::BUILT_IN {
-            cx.print(&format!("{}: built in\n", own.name()))?;
-        }
+/// If a model cannot be read, the reason takes the place of the numbers.
+pub(super) fn list(cx: &Context) -> Result<(), Failure> {
+    for own in ModelChoice::BUILT_IN {
+        cx.print(&format!("{}: built in\n", own.name()))?;
     }
     let models = folder(&cx.shelf).map_or(Ok(Vec::new()), |folder| folder.list())?;
     for (name, path) in models {
         let model = load_model(&path);
-        let line = if json {
-            json::ascii(&match model {
-                Ok(model) => json!({
-                    "name": name.as_str(),
-                    "file": path.to_string_lossy(),
-                    "shapes": model.shapes().iter().map(|own| &own.name).collect::<Vec<_>>(),
-                    "keys": model.keys().len(),
-                    "shard": model.shard().to_string(),
-                }),
-                Err(error) => json!({"name": name.as_str(), "error": error.to_string()}),
-            })
-        } else {
-            let said = model.map_or_else(|error| error.to_string(), |model| in_short(&model));
-            format!("{name}: {said}")
-        };
+        let said = model.map_or_else(|error| error.to_string(), |model| in_short(&model));
+        let line = format!("{name}: {said}");
         cx.print(&format!("{}\n", Charset::current().line(&line)))?;
     }
     Ok(())

@@ -29,7 +29,6 @@ use crate::cli::failure::{Failure, Named};
 use crate::cli::input::outlines::OutlineFlags;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::progress::ProgressDisplay;
-use crate::cli::output::table::{Record, csv};
 use crate::cli::signals::{Signals, on_threads};
 use crate::cli::{Context, note};
 
@@ -67,11 +66,7 @@ pub(crate) enum ModelCommand {
     },
     /// List the models
     #[command(after_help = keeping::LIST_EXAMPLES)]
-    List {
-        /// Print JSON, one line per answer
-        #[arg(long)]
-        json: bool,
-    },
+    List,
     /// Delete a model
     #[command(after_help = keeping::DELETE_EXAMPLES)]
     Delete {
@@ -89,7 +84,7 @@ impl ModelCommand {
         match self {
             Self::Train(command) => command.run(cx),
             Self::Show { model, json } => keeping::show(&model, json, cx),
-            Self::List { json } => keeping::list(json, cx),
+            Self::List => keeping::list(cx),
             Self::Delete { name } => keeping::delete(&name, cx),
             Self::Confusion(command) => command.run(cx),
             Self::Touches(command) => command.run(cx),
@@ -113,7 +108,6 @@ pub(crate) struct SetFlags {
 }
 
 /// The forms of a table, and the file that it is written to.
-#[expect(clippy::struct_excessive_bools, reason = "flags")]
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct TableFlags {
     /// Write a drawing
@@ -125,9 +119,6 @@ pub(crate) struct TableFlags {
     /// Print JSON, one line per answer
     #[arg(long)]
     json: bool,
-    /// Print comma-separated values
-    #[arg(long, conflicts_with = "json")]
-    csv: bool,
     /// Show no progress and no notes
     #[arg(long)]
     pub(crate) quiet: bool,
@@ -137,16 +128,12 @@ pub(crate) struct TableFlags {
 trait Table {
     fn text(&self) -> String;
 
-    /// The lines of the CSV.
-    fn records(&self) -> Vec<Record<'static>> {
-        Vec::new()
-    }
-
-    fn csv(&self) -> String {
-        csv(&self.records())
-    }
-
     fn json(&self) -> String;
+
+    /// None if there is no CSV of it.
+    fn csv(&self) -> Option<String> {
+        None
+    }
 
     /// None if there is no drawing of it.
     fn svg(&self) -> Option<String> {
@@ -163,17 +150,17 @@ impl TableFlags {
         Ok(())
     }
 
-    fn give(&self, table: &impl Table, cx: &Context) -> Result<(), Failure> {
+    fn give(&self, table: &impl Table, as_csv: bool, cx: &Context) -> Result<(), Failure> {
         if let Some((path, drawing)) = self.export.as_ref().zip(table.svg()) {
             storage::write(path, drawing.as_bytes(), replacing(self.force))?;
             if !self.quiet {
                 cx.note(&written(path));
             }
         }
-        cx.print(&match (self.json, self.csv) {
-            (true, _) => table.json(),
-            (_, true) => table.csv(),
-            _ => table.text(),
+        cx.print(&match table.csv().filter(|_| as_csv) {
+            Some(csv) => csv,
+            None if self.json => table.json(),
+            None => table.text(),
         })
     }
 }

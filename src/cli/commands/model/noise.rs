@@ -101,7 +101,7 @@ impl Table for NoisyRates {
             )
     }
 
-    fn records(&self) -> Vec<Record<'static>> {
+    fn json(&self) -> String {
         let record = |(noise, rate): &(f64, RecognitionRate)| {
             Record(vec![
                 ("noise", json!(noise)),
@@ -113,11 +113,8 @@ impl Table for NoisyRates {
                 ("held", json!(rate.held_share)),
             ])
         };
-        self.rows.iter().map(record).collect()
-    }
-
-    fn json(&self) -> String {
-        let answer = json!({"seed": self.seed, "degradation": self.records()});
+        let rows: Vec<_> = self.rows.iter().map(record).collect();
+        let answer = json!({"seed": self.seed, "degradation": rows});
         json::text(&answer) + "\n"
     }
 

@@ -45,8 +45,8 @@ Of a model, the shapes, the angles, the threshold and, if they fill one cell,
 the positions are taken; its zooms and its sensor are not.
 
 'imprints' counts the distinct imprints up to shifts, and 'sensor' is the
-smallest that holds the shapes, at least 16 x 16. With --csv and --json they are
-called 'keys' and 'side'.
+smallest that holds the shapes, at least 16 x 16. With --json they are called
+'keys' and 'side'.
 
 --want tries every scale from the smallest up, or every pitch from the coarsest
 down, and then tenths of a step before the first one that reaches the error. A
@@ -152,12 +152,7 @@ impl Separate {
                 smallest,
             })
         })?;
-        if self.table.csv {
-            // The table has no place for the result of --want. It is an answer, not a note, so --quiet does not
-            // suppress it.
-            separated.found().lines().for_each(|line| cx.note(line));
-        }
-        self.table.give(&separated, cx)
+        self.table.give(&separated, false, cx)
     }
 
     fn check(&self) -> Result<(), Failure> {
@@ -240,8 +235,9 @@ fn short(value: f64) -> String {
 
 impl Separated {
     fn record(&self, point: &SeparationPoint) -> Record<'static> {
-        Record(vec![
-            (self.axis.name(), json!(point.value)),
+        let scale = (self.axis == SizeAxis::Pitch).then(|| ("scale", json!(point.scale)));
+        let size = [(self.axis.name(), json!(point.value))].into_iter();
+        let others = [
             ("threshold", json!(point.threshold)),
             ("error", json!(point.limit.error())),
             ("touches", count(point.limit.touches)),
@@ -249,16 +245,8 @@ impl Separated {
             ("certain", count(certain(point))),
             ("keys", json!(point.limit.keys)),
             ("side", json!(point.side)),
-        ])
-    }
-
-    /// JSON has the scale of a pitch, too.
-    fn object(&self, point: &SeparationPoint) -> Record<'static> {
-        let mut record = self.record(point);
-        if self.axis == SizeAxis::Pitch {
-            record.0.insert(1, ("scale", json!(point.scale)));
-        }
-        record
+        ];
+        Record(size.chain(scale).chain(others).collect())
     }
 
     /// What the search found.
@@ -307,10 +295,6 @@ impl Table for Separated {
         table(&rows, &[0]) + &self.found()
     }
 
-    fn records(&self) -> Vec<Record<'static>> {
-        self.points.iter().map(|point| self.record(point)).collect()
-    }
-
     /// With `--want`, `smallest`, `step` and `missed_again` are null if no size reaches the error.
     fn json(&self) -> String {
         #[derive(Serialize)]
@@ -325,12 +309,12 @@ impl Table for Separated {
             [json!({
                 "threshold": self.threshold,
                 "error": error,
-                "smallest": found.map(|own| self.object(&own.point)),
+                "smallest": found.map(|own| self.record(&own.point)),
                 "step": found.map(|own| own.step),
                 "missed_again": found.map(|own| own.missed_again),
             })]
         });
-        let points = self.points.iter().map(|point| self.object(point));
+        let points = self.points.iter().map(|point| self.record(point));
         let (axis, points) = (self.axis.name(), points.collect());
         json::text(&Answer { axis, points, want }) + "\n"
     }

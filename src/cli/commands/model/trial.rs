@@ -132,10 +132,10 @@ impl Table for TrialReport<'_> {
         text + &format!("{each} of each shape, seed {seed}\n\n") + &self.confusion()
     }
 
-    fn csv(&self) -> String {
+    fn csv(&self) -> Option<String> {
         let (labels, counts) = self.rows();
         let names = [&*self.trial.known.labels, &["unknown".to_owned()]].concat();
-        matrix_csv(&labels, &names, counts)
+        Some(matrix_csv(&labels, &names, counts))
     }
 
     fn json(&self) -> String {
