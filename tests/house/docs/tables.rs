@@ -74,22 +74,17 @@ pub(crate) fn prompt() -> String {
 /// The parameters that can be set, with their ranges on the paper's sensor.
 pub(crate) fn parameters() -> String {
     let row = |row: &taxel_core::parameter::ParameterRow| {
-        let (flag, range) = (row.parameter.flag(), Sensor::default().range(row.parameter));
+        let (range, unit) = (Sensor::default().range(row.parameter), row.unit.name());
         // The table of parameters has values for these two, which apply once they are switched on. Without the flag
         // there is neither a hole nor a scale.
         let default = match row.parameter {
             Parameter::Thickness | Parameter::Pitch => "none".to_owned(),
             _ => row.default.to_string(),
         };
-        format!(
-            "| `{}` | `--{flag}` | {} | {range} | {} | {default} |\n",
-            row.key,
-            row.meaning,
-            row.unit.name()
-        )
+        let range = format!("{range} {unit}");
+        let (key, range) = (row.key, range.trim_end());
+        format!("| `{key}` | {} | {range} | {default} |\n", row.meaning)
     };
     let rows: String = PARAMETERS.iter().map(row).collect();
-    format!(
-        "\n| key | flag | meaning | range on 16 × 16 | unit | default on 16 × 16 |\n|---|---|---|---|---|---|\n{rows}\n"
-    )
+    format!("\n| key | meaning | range on 16 × 16 | default |\n|---|---|---|---|\n{rows}\n")
 }
