@@ -71,7 +71,7 @@ impl serde_json::ser::Formatter for AsciiFormatter {
 }
 
 /// A line with `null` for each `NaN`: Python writes it, although JSON has no such number.
-pub fn without_nan(line: &[u8]) -> Cow<'_, [u8]> {
+fn without_nan(line: &[u8]) -> Cow<'_, [u8]> {
     if !line.windows(3).any(|word| word == b"NaN") {
         return Cow::Borrowed(line);
     }

@@ -11,9 +11,8 @@ use crate::formats::recording::error::{foreign, unknown_format, unshaped};
 use crate::formats::recording::event::{ReadOptions, ReadState, RecordingSink, Sink, Stop};
 use crate::formats::recording::json as json_lines;
 use crate::formats::recording::numpy;
-use crate::formats::recording::ros::{MCAP_MAGIC, echo, mcap};
-use crate::formats::recording::vendor::{tekscan, xsensor};
-use crate::formats::recording::{boards, table};
+use crate::formats::recording::records::MCAP_MAGIC;
+use crate::formats::recording::{boards, echo, mcap, table, tekscan, xsensor};
 
 /// The most bytes at the beginning that decide the format.
 pub(super) const LOOKED_AT: usize = 1 << 16;

@@ -34,8 +34,9 @@
 //! table            numbers in rows and columns, with or without a header
 //! json             JSON lines
 //! numpy            NPY and NPZ
-//! ros              MCAP, and ros2 topic echo
-//! vendor           Tekscan, XSENSOR and FlexiTac
+//! mcap             MCAP, whose records it reads by `records`
+//! echo             ros2 topic echo
+//! tekscan, xsensor, boards
 //! format           which of these a file is
 //! ```
 //! Each format uses the modules above it; formats do not use each other.
@@ -62,9 +63,15 @@ pub(super) mod json;
 
 mod numpy;
 
-pub(super) mod ros;
+mod echo;
 
-mod vendor;
+mod mcap;
+
+mod records;
+
+mod tekscan;
+
+mod xsensor;
 
 mod boards;
 

@@ -31,7 +31,7 @@ use crate::error::ReadError;
 use crate::formats::job::too_large;
 use crate::formats::numpy::Number;
 use crate::formats::recording::event::{ChannelInfo, LONGEST_NAME, Sink, Stop};
-use crate::formats::recording::ros::records::{CHANNEL, SCHEMA, each_record};
+use crate::formats::recording::records::{CHANNEL, SCHEMA, each_record};
 use crate::formats::recording::size::{arranged, changed, frame_size, matrix_size};
 use crate::formats::recording::time;
 

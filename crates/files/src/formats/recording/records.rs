@@ -16,7 +16,8 @@ use taxel_core::quote::shortened_message;
 
 use crate::error::{ReadError, ReadErrorKind};
 use crate::formats::recording::event::Stop;
-use crate::formats::recording::ros::MCAP_MAGIC;
+
+pub(super) const MCAP_MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
 
 const LARGEST_RECORD: u64 = 1 << 24;
 
