@@ -119,7 +119,7 @@ fn on_page(app: &mut App, mut page: Box<dyn Page>, message: &Message) {
     }
 }
 
-/// Names the key that lists all keys or, in that list, the keys that scroll.
+/// Names the key that lists those that do something.
 fn unknown(app: &mut App, key: Key) {
     if key == Key::Esc
         && let Some(what) = app.jobs.give_up_reading(app.pages.len())
@@ -131,19 +131,11 @@ fn unknown(app: &mut App, key: Key) {
     }
     app.unknown_keys.push(key);
     let here = app.context();
-    let label = |action| app.keymap.label(here, action);
-    let instead = if here == Context::Help {
-        let scrolling = [
-            &action::SCROLL_UP,
-            &action::SCROLL_DOWN,
-            &action::SCREEN_UP,
-            &action::SCREEN_DOWN,
-        ];
-        format!("{} scroll", scrolling.map(label).join(" "))
-    } else {
-        format!("{} lists the keys", label(&action::HELP))
-    };
-    refuse(app, format!("{} does nothing here; {instead}", key.label()));
+    let mut text = format!("{} does nothing here", key.label());
+    if here != Context::Help {
+        text += &format!("; {} lists the keys", app.keymap.label(here, &action::HELP));
+    }
+    refuse(app, text);
 }
 
 #[cfg(test)]

@@ -38,14 +38,6 @@ fn name_of(source: &Source) -> &str {
     source.stored_name().unwrap_or(source.kind_name())
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ExploreTab {
-    Imprints,
-    Statistics,
-    Histogram,
-    Map,
-}
-
 /// Numbers say how many further on something is; negative goes back.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExploreMessage {
@@ -53,7 +45,8 @@ pub enum ExploreMessage {
     Ranges,
     Start(Box<PoseGrid>),
     Stop,
-    Tab(ExploreTab),
+    /// The number of a tab, from 0.
+    Tab(usize),
     NextTab(i8),
     Feature(i8),
     /// To the heading to the right.

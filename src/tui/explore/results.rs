@@ -27,7 +27,7 @@ use crate::tui::explore::imprints::{self, ImprintList, SortColumn};
 use crate::tui::explore::map::{self, MapState};
 use crate::tui::explore::statistics::{HISTOGRAM, STATISTICS};
 use crate::tui::explore::work::{ExportDialog, open_ranges};
-use crate::tui::explore::{ExploreMessage, ExploreTab, Findings, name_of};
+use crate::tui::explore::{ExploreMessage, Findings, name_of};
 use crate::tui::keys::{Context, action};
 use crate::tui::widget::write::{self, around, narrow};
 use crate::tui::widget::{Role, Theme, moved};
@@ -42,8 +42,9 @@ pub(super) struct Tab {
     pub(super) on: fn(&mut Results, &mut App, &Message, Rect),
 }
 
-/// In the order of [`ExploreTab`].
 static TABS: [&Tab; 4] = [&imprints::TAB, &STATISTICS, &HISTOGRAM, &map::TAB];
+const IMPRINTS: usize = 0;
+const MAP: usize = 3;
 
 pub(crate) struct Results {
     pub(super) findings: Arc<Findings>,
@@ -131,7 +132,7 @@ impl Results {
 
     /// Its present pose is that at its cursor, not that of the selected imprint.
     fn is_map(&self) -> bool {
-        self.tab == ExploreTab::Map as usize
+        self.tab == MAP
     }
 
     fn choose(&mut self, number: usize) {
@@ -191,14 +192,14 @@ impl Results {
         let pose = self.pose().ok_or(NOTHING_SELECTED)?;
         let grid = &self.sweep().grid;
         if !self.is_map() {
-            (self.place, self.tab) = (grid.index(pose), ExploreTab::Map as usize);
+            (self.place, self.tab) = (grid.index(pose), MAP);
             return Ok(());
         }
         let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(pose));
         let id = self.sweep().atlas.find(&imprint);
         self.list
             .find(id.ok_or("this pose was not swept: the sweep was stopped")?);
-        self.tab = ExploreTab::Imprints as usize;
+        self.tab = IMPRINTS;
         Ok(())
     }
 
@@ -238,7 +239,7 @@ impl Results {
                 return Ok(Flow::push(ExportDialog::new(self)));
             }
             Message::Explore(ExploreMessage::Ranges) => open_ranges(app, Some(&self.sweep().grid)),
-            Message::Explore(ExploreMessage::Tab(tab)) => self.tab = tab as usize,
+            Message::Explore(ExploreMessage::Tab(tab)) => self.tab = tab,
             Message::Explore(ExploreMessage::NextTab(by)) => {
                 self.tab = around(self.tab, by, TABS.len());
             }
@@ -291,10 +292,7 @@ impl Page for Results {
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
         let mut titles = titles(area);
         match titles.find(|(.., place)| place.contains(at)) {
-            Some((tab, ..)) => {
-                let by = i8::try_from(tab).ok()? - i8::try_from(self.tab).ok()?;
-                Some(Message::Explore(ExploreMessage::NextTab(by)))
-            }
+            Some((tab, ..)) => Some(Message::Explore(ExploreMessage::Tab(tab))),
             None => (self.tab().click)(self, write::below(area, 2), at),
         }
     }

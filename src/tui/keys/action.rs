@@ -7,7 +7,6 @@ use crate::tui::app::{
     Message::{self, Explore, Live, Recognise},
 };
 use crate::tui::explore::ExploreMessage::{self, Angle, Columns, Feature, NextTab, Tab};
-use crate::tui::explore::ExploreTab;
 use crate::tui::keys::{Arrow, Context};
 use crate::tui::live::LiveMessage::{self, Threshold, Window};
 use crate::tui::recognise::RecogniseMessage;
@@ -96,10 +95,10 @@ pub static LAST: Action = action("last", Message::ScrollTo(Endpoint::Last));
 pub static EXPLORE: Action = action("explore", Explore(ExploreMessage::Open));
 pub static RANGES: Action = action("ranges", Explore(ExploreMessage::Ranges));
 pub static STOP: Action = action("stop", Explore(ExploreMessage::Stop));
-pub static IMPRINTS: Action = action("imprints", Explore(Tab(ExploreTab::Imprints)));
-pub static STATISTICS: Action = action("statistics", Explore(Tab(ExploreTab::Statistics)));
-pub static HISTOGRAM: Action = action("histogram", Explore(Tab(ExploreTab::Histogram)));
-pub static MAP: Action = action("map", Explore(Tab(ExploreTab::Map)));
+pub static IMPRINTS: Action = action("imprints", Explore(Tab(0)));
+pub static STATISTICS: Action = action("statistics", Explore(Tab(1)));
+pub static HISTOGRAM: Action = action("histogram", Explore(Tab(2)));
+pub static MAP: Action = action("map", Explore(Tab(3)));
 pub static NEXT_TAB: Action = action("next-page", Explore(NextTab(1)));
 pub static PREVIOUS_TAB: Action = action("previous-page", Explore(NextTab(-1)));
 pub static NEXT_DESCRIPTOR: Action = action("next-descriptor", Explore(Feature(1)));
