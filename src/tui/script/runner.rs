@@ -35,10 +35,6 @@ use crate::tui::script::session::Session;
 use crate::tui::widget::{ColorDepth, Palette, write};
 
 #[derive(Clone, Debug)]
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "each is a flag of the command"
-)]
 pub struct ScriptOptions {
     pub options: Options,
     /// Columns and rows of the screen, unless the script sets them.
