@@ -318,14 +318,13 @@ impl Watcher<'_> {
         if !self.channels.takes(frame.channel) {
             return Ok(());
         }
-        if !std::mem::replace(&mut self.has_frame, true) {
-            if let Some(wanted) = &self.request.options.channel
-                && self.names.is_empty()
-            {
-                self.say(format!(
-                    "no channel named {wanted:?}: a stream has none, and all frames are taken"
-                ));
-            }
+        if !std::mem::replace(&mut self.has_frame, true)
+            && let Some(wanted) = &self.request.options.channel
+            && self.names.is_empty()
+        {
+            self.say(format!(
+                "no channel named {wanted:?}: a stream has none, and all frames are taken"
+            ));
         }
         self.record(|recorder| recorder.add(frame, time))?;
         let mut frame = frame.clone();

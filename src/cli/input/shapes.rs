@@ -100,30 +100,25 @@ impl Shelf {
         Input::open(path).map(Located::Input)
     }
 
-    /// Returns the message about an error of the library, with a similar name, or where to look, for an unknown one.
+    /// The message about an error of the library, and what helps.
     pub(crate) fn refused(&self, error: LibraryError) -> Failure {
-        match &error {
-            LibraryError::NoPlace => Failure::from(error)
-                .with_hint("; name a folder with --library DIR or TAXEL_LIBRARY"),
-            _ => {
-                let hint = self.hint(&error);
-                Failure::from(error).with_hint(hint)
-            }
-        }
+        let hint = self.hint(&error);
+        Failure::from(error).with_hint(hint)
     }
 
-    /// Returns the end of the message about an unknown name: what it is if not a shape, a similar name, or the command
-    /// that lists the names.
     fn hint(&self, error: &LibraryError) -> String {
-        let LibraryError::Unknown(name) = error else {
-            return self.readable().suggestion(error);
-        };
-        if name.parse::<FigureKind>().is_ok() {
-            return format!("; {name:?} is a figure, which taxel figure and taxel sweep take");
-        }
-        match self.readable().suggestion(error) {
-            none if none.is_empty() => "; 'taxel library list' shows all".to_owned(),
-            similar => similar,
+        let similar = self.readable().suggestion(error);
+        match error {
+            LibraryError::NoPlace => {
+                "; name a folder with --library DIR or TAXEL_LIBRARY".to_owned()
+            }
+            LibraryError::Unknown(name) if name.parse::<FigureKind>().is_ok() => {
+                format!("; {name:?} is a figure, which taxel figure and taxel sweep take")
+            }
+            LibraryError::Unknown(_) if similar.is_empty() => {
+                "; 'taxel library list' shows all".to_owned()
+            }
+            _ => similar,
         }
     }
 

@@ -70,19 +70,6 @@ impl TrialReport<'_> {
         rows.unzip()
     }
 
-    /// How many touches are right, wrong and unknown, and how well shapes fit them.
-    fn summary(&self, tally: &Tally, of: &str, counts: &[(&str, u128, &str)]) -> String {
-        let touches = tally.touches();
-        let exact = tally.differs.get(&0).copied().unwrap_or_default();
-        let median = tally.median_differs().map_or(String::new(), |median| {
-            format!("median: {}", differing(median))
-        });
-        let exact = ("fits exactly", exact.into(), &*median);
-        let counts = counts.iter().copied().chain([exact]);
-        let title = format!("{} of {of}\n", counted(touches, "touch"));
-        title + &shares(touches, counts)
-    }
-
     /// Right answers are in brackets: the name of a shape of the model, otherwise unknown.
     fn confusion(&self) -> String {
         let (labels, counts) = self.rows();
@@ -101,6 +88,19 @@ impl TrialReport<'_> {
     }
 }
 
+/// How many touches are right, wrong and unknown, and how well shapes fit them.
+fn summary(tally: &Tally, of: &str, counts: &[(&str, u128, &str)]) -> String {
+    let touches = tally.touches();
+    let exact = tally.differs.get(&0).copied().unwrap_or_default();
+    let median = tally.median_differs().map_or(String::new(), |median| {
+        format!("median: {}", differing(median))
+    });
+    let exact = ("fits exactly", exact.into(), &*median);
+    let counts = counts.iter().copied().chain([exact]);
+    let title = format!("{} of {of}\n", counted(touches, "touch"));
+    title + &shares(touches, counts)
+}
+
 impl Table for TrialReport<'_> {
     /// ```text
     /// 5,600 touches of shapes of the model
@@ -116,7 +116,7 @@ impl Table for TrialReport<'_> {
             ("wrong", known.wrong(), ""),
             ("unknown", known.unknown(), ""),
         ];
-        let mut text = self.summary(known, "shapes of the model", &counts);
+        let mut text = summary(known, "shapes of the model", &counts);
         if let Some(foreign) = self.foreign() {
             let counts = [
                 (
@@ -126,7 +126,7 @@ impl Table for TrialReport<'_> {
                 ),
                 ("wrong", foreign.wrong(), ""),
             ];
-            text += &self.summary(foreign, "foreign shapes", &counts);
+            text += &summary(foreign, "foreign shapes", &counts);
         }
         let (each, seed) = (counted(self.each, "random touch"), self.seed);
         text + &format!("{each} of each shape, seed {seed}\n\n") + &self.confusion()
