@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, CommandFactory, Parser, Subcommand};
-use taxel_core::figure::FigureKind;
+use taxel_core::quote::other_figure;
 
 use crate::cli::Context;
 use crate::cli::commands::batch::Batch;
@@ -181,7 +181,7 @@ pub(super) fn read(arguments: Vec<OsString>) -> Result<ArgMatches, Error> {
 /// Adds what figure a word such as `circle` may mean.
 fn with_tip(mut error: Error) -> Error {
     if let Some(ContextValue::String(given)) = error.get(ContextKind::InvalidValue)
-        && let Some(tip) = FigureKind::of_other_name(given)
+        && let Some(tip) = other_figure(given)
     {
         error.remove(ContextKind::SuggestedValue);
         let tips = ContextValue::StyledStrs(vec![tip.into()]);

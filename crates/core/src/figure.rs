@@ -80,15 +80,6 @@ impl FigureKind {
         Self::ALL.iter().map(|kind| kind.name()).collect()
     }
 
-    /// Returns a hint for a word that means a figure but is not its name: "circle" or "square".
-    pub fn of_other_name(word: &str) -> Option<&'static str> {
-        match word.to_ascii_lowercase().as_str() {
-            "circle" => Some("a circle is an ellipse with equal radii"),
-            "square" => Some("a square is a rectangle with equal sides"),
-            _ => None,
-        }
-    }
-
     /// Returns the parameters of the kind in the order of forms: sizes, position, angle, thickness. A figure may lack
     /// the thickness.
     pub fn parameters(self) -> &'static [Parameter] {

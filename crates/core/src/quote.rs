@@ -63,6 +63,15 @@ pub fn unknown_name(found: &str, names: &[&str]) -> String {
     format!("{found:?} is unknown, expected one of {names}{meant}")
 }
 
+/// Returns a hint for a word that means a figure but is not the name of one: "circle" or "square".
+pub fn other_figure(word: &str) -> Option<&'static str> {
+    match word.to_ascii_lowercase().as_str() {
+        "circle" => Some("a circle is an ellipse with equal radii"),
+        "square" => Some("a square is a rectangle with equal sides"),
+        _ => None,
+    }
+}
+
 /// Writes a word as it is typed on a command line: in single quotes if a shell would otherwise interpret it.
 pub fn as_argument(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "-_./,:=@%+".contains(c);

@@ -3,9 +3,9 @@
 //! ```text
 //!  formats   text, CSV, NPY, JSON, atlases, models; outlines from SVG and points; recordings and streams of
 //!            sensors; drawings
-//!  storage   files: atomic writes, the folder of stored shapes, journal, trash
+//!  storage   files: atomic writes, the folder of stored shapes with its journal and trash, models
 //!  acquire   where frames come from: serial, pipes, tcp, files; recording them
-//!  memory    a limit on the memory of sweeps and trainings
+//!  memory    stops sweeps, trainings and merges before the memory runs out
 //! ```
 //! `formats` only reads and writes streams that its callers have opened; the others open them.
 

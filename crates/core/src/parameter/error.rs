@@ -1,9 +1,8 @@
 //! The error for a value that is not allowed, with one message for forms, flags and files.
 
-use crate::figure::FigureKind;
 use crate::parameter::number::{complaint, short};
 use crate::parameter::table::{Parameter, Range, Unit};
-use crate::quote::{joined, unknown_name};
+use crate::quote::{joined, other_figure, unknown_name};
 
 /// The error for a value that is not allowed. The message names the parameter, the value, and what is expected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -125,7 +124,7 @@ impl UnknownName {
         let one = all.iter().find(|&&one| name(one) == found);
         one.copied().ok_or_else(|| {
             let names: Vec<_> = all.iter().map(|&one| name(one)).collect();
-            let other = FigureKind::of_other_name(found).map(|known| format!("; {known}"));
+            let other = other_figure(found).map(|known| format!("; {known}"));
             let unknown = unknown_name(found, &names);
             Self(format!("{what} {unknown}{}", other.unwrap_or_default()))
         })

@@ -2,6 +2,9 @@
 //!
 //! A taxel in column `i` inside of a span from `a` to `b` is active while `i − b ≤ x0 ≤ i − a`. If a value of x0 lies
 //! within [`NEAR`] of the end of a span, or in a span that is in doubt, [`Exact`] decides for that taxel and pose.
+//!
+//! [`FlipWriter`] does this: it reads [`Spans`], asks [`Exact`] and writes [`Events`], which stand below it in this
+//! order: `Spans`, `Events`, `Exact`.
 
 use crate::atlas::Layout;
 use crate::geometry::{Double, Overlap, Point, Real, nearest};

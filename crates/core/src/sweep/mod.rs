@@ -12,6 +12,9 @@
 //! -> events -> runs   the runs of poses with the same imprint
 //! -> atlas            each imprint counted once per run, and described once per sweep
 //! ```
+//! From the whole to the part: a grid has *orientations* (an angle and a pair of zooms), those that show the same shape
+//! form a *group*, a *task* is some rows of one or two groups, and a *row* crosses the shape's *bands*, one for each
+//! row of the sensor. So read `run` (tasks), `runs` (rows), `flips` (bands), then `polygon`.
 //!
 //! **What is skipped.** If the shape looks the same at several angles, only one of them is swept ([`crate::pose`]).
 //! If the shape at one angle is the mirror image of itself at another, the spans of one follow from those of the

@@ -2,6 +2,9 @@
 //!
 //! [`crate::sweep::flips`] turns the spans of a band into events; between two events the imprint is the same: one *run*.
 //! Rows that are images of rows swept before ([`PointSymmetry`]) follow from those rows.
+//!
+//! For each row, [`Sweeper`] asks its groups whether they have to see it ([`Group::begin`]), shows them the spans of
+//! each band ([`Group::add_flips`]), and lets them count its runs ([`Group::end`]).
 
 use std::ops::Range;
 use std::sync::Arc;
