@@ -198,7 +198,7 @@ fn check(source: &FrameSource, request: &WatchRequest) -> Result<(), Failure> {
         return Ok(());
     };
     let mut recording = RecordingFile::open(path, options.of_recording())?;
-    let (names, is_whole) = recording.channel_names(Some(wanted));
+    let (names, is_whole) = recording.channel_names(wanted);
     // A damage is reported when the source is watched.
     if names.contains(wanted) || !is_whole {
         return Ok(());

@@ -98,14 +98,14 @@ impl RecordingFile {
         }
     }
 
-    /// The names of its channels, up to the one of this name if it is given; and whether all of it could be read.
-    pub(crate) fn channel_names(&mut self, up_to: Option<&str>) -> (Vec<String>, bool) {
+    /// The names of its channels, up to the one of this name; and whether all of it could be read.
+    pub(crate) fn channel_names(&mut self, up_to: &str) -> (Vec<String>, bool) {
         let mut names = Vec::new();
         let read = self.read(&mut |event| {
             if let RecordingEvent::Channel(info) = event {
                 names.push(info.shown_name().to_owned());
             }
-            stop_if(up_to.is_some() && names.last().map(String::as_str) == up_to)
+            stop_if(names.last().is_some_and(|name| name == up_to))
         });
         (names, read.is_ok())
     }
