@@ -1,67 +1,37 @@
 //! Between numpy arrays and imprints; long work that releases the interpreter and stops on Ctrl-C.
 
-use std::any::Any;
-use std::fmt::Display;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex};
 use std::time::Duration;
 
-use numpy::{
-    Element, IxDyn, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods,
-    PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods, dtype, get_array_module,
-};
-use pyo3::exceptions::{PyMemoryError, PyUserWarning, PyValueError};
+use numpy::ndarray::ArrayView2;
+use numpy::prelude::*;
+use numpy::{Element, IxDyn, PyArray1, PyArrayDyn, PyReadonlyArray3, dtype};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use taxel_core::imprint::Imprint;
 use taxel_core::lock::locked;
 use taxel_core::progress::{Progress, stop_if};
-use taxel_core::sensor::{MAX_SIDE, MatrixSize};
+use taxel_core::sensor::MatrixSize;
 use taxel_files::memory::MemoryGuard;
-use taxel_files::storage::FileError;
-use taxel_files::{ReadError, ReadErrorKind};
 
-/// A `ValueError` with the program's sentence.
-pub(crate) fn wrong(error: impl Display) -> PyErr {
-    PyValueError::new_err(error.to_string())
-}
+use crate::failure::Result;
 
-/// The error about a file: an `OSError` if the system refused, otherwise a `ValueError`.
-pub(crate) fn unread(path: &Path, error: &ReadError) -> PyErr {
-    let name = path.to_string_lossy();
-    let text = error.to_string();
-    let text = if text.starts_with(&*name) {
-        text
-    } else {
-        format!("{name}: {text}")
-    };
-    match error.kind {
-        ReadErrorKind::Io(kind) => io::Error::new(kind, text).into(),
-        _ => wrong(text),
-    }
-}
-
-pub(crate) fn unwritten(error: FileError) -> PyErr {
-    io::Error::new(error.error.kind(), error.to_string()).into()
-}
-
-/// A `UserWarning` where the program writes a note.
-pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
-    let warnings = py.import("warnings")?;
-    warnings.call_method1("warn", (text, py.get_type::<PyUserWarning>(), 2))?;
-    Ok(())
-}
-
-/// An array of zeros, by numpy, whose errors say what is too large.
-pub(crate) fn zeros<T: Element>(
-    py: Python<'_>,
-    shape: Vec<usize>,
-) -> PyResult<Bound<'_, PyArrayDyn<T>>> {
-    let made = get_array_module(py)?.call_method1("zeros", (shape, dtype::<T>(py)))?;
-    Ok(made.cast_into()?)
+/// An array that a function fills. It is made by numpy, whose errors say what is too large.
+pub(crate) fn filled<'py, T: Element>(
+    py: Python<'py>,
+    shape: &[usize],
+    fill: impl FnOnce(&mut [T]) -> Result<()>,
+) -> Result<Bound<'py, PyArrayDyn<T>>> {
+    let zeros = py
+        .import("numpy")?
+        .call_method1("zeros", (shape, dtype::<T>(py)))?;
+    let array = zeros.cast_into().map_err(PyErr::from)?;
+    fill(PyArrayMethods::try_readwrite(&array)?.as_slice_mut()?)?;
+    Ok(array)
 }
 
 /// The values of a vector as an array of this shape, without a copy.
@@ -69,87 +39,35 @@ pub(crate) fn shaped<'py, T: Element>(
     py: Python<'py>,
     values: Vec<T>,
     shape: &[usize],
-) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
-    PyArray1::from_vec(py, values).reshape(IxDyn(shape))
+) -> Result<Bound<'py, PyArrayDyn<T>>> {
+    Ok(PyArray1::from_vec(py, values).reshape(IxDyn(shape))?)
 }
 
-/// Numbers as an array of f64 in one piece: `values` itself, if it is one.
-pub(crate) fn numbers<'py>(
-    values: &Bound<'py, PyAny>,
-    what: &str,
-) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
-    let numpy = get_array_module(values.py())?;
-    let array = numpy.call_method1("asarray", (values,))?;
-    let array = array.cast_into::<PyUntypedArray>()?;
-    if !b"iuf".contains(&array.dtype().kind()) {
-        let found = array.dtype();
-        return Err(wrong(format!(
-            "{what}: found an array of {found}, expected numbers"
-        )));
-    }
-    let floats = numpy.call_method1("ascontiguousarray", (&array, dtype::<f64>(values.py())))?;
-    // What numpy makes of a number has one dimension.
-    let floats = floats.call_method1("reshape", (array.shape(),))?;
-    Ok(floats.cast_into::<PyArrayDyn<f64>>()?.try_readonly()?)
-}
-
-/// Imprints from an array of bool: one, or a stack of them.
-pub(crate) fn imprints(array: &Bound<'_, PyAny>) -> PyResult<(Vec<Imprint>, bool)> {
-    let refused = |found: String| {
-        wrong(format!(
-            "found {found}, expected an imprint: an array of bool, rows × columns from 1 × 1 to {MAX_SIDE} × {MAX_SIDE}, or a stack of them"
-        ))
-    };
-    let numpy = get_array_module(array.py())?;
-    let array = numpy.call_method1("asarray", (array,))?;
-    let untyped = array.cast::<PyUntypedArray>()?;
-    let shape = untyped.shape();
-    let Ok(masks) = array.cast::<PyArrayDyn<bool>>() else {
-        return Err(refused(format!("an array of {}", untyped.dtype())));
-    };
-    let size = match shape {
-        [rows, columns] | [_, rows, columns] => MatrixSize::of_sides(*columns, *rows),
-        _ => None,
-    };
-    let size = size.ok_or_else(|| refused(format!("an array shaped {shape:?}")))?;
-    let masks = masks.try_readonly()?;
-    let view = masks.as_array();
-    let (mut all, mut cells) = (Vec::new(), view.iter());
-    for _ in 0..view.len() / size.cells() {
+/// The imprints in a stack of them.
+pub(crate) fn imprints(stack: &PyReadonlyArray3<'_, bool>) -> Result<Vec<Imprint>> {
+    let size = MatrixSize::new(
+        u8::try_from(stack.shape()[2])?,
+        u8::try_from(stack.shape()[1])?,
+    )?;
+    let imprint = |rows: ArrayView2<'_, bool>| {
         let mut imprint = Imprint::empty(size);
-        for row in 0..usize::from(size.rows()) {
-            let columns = 0..size.columns();
-            let word = columns
-                .zip(&mut cells)
-                .fold(0, |word, (column, &cell)| word | u64::from(cell) << column);
+        for (row, cells) in rows.outer_iter().enumerate() {
+            let cells = (0..size.columns()).zip(cells);
+            let word = cells.fold(0, |word, (column, &cell)| word | u64::from(cell) << column);
             imprint.set_word(row, word);
         }
-        all.push(imprint);
-    }
-    Ok((all, shape.len() == 3))
-}
-
-/// One imprint from an array of bool.
-pub(crate) fn imprint(array: &Bound<'_, PyAny>) -> PyResult<Imprint> {
-    match imprints(array)? {
-        (own, false) if own.len() == 1 => Ok(own[0]),
-        _ => Err(wrong(
-            "found a stack of imprints, expected one: an array of bool, rows × columns",
-        )),
-    }
+        imprint
+    };
+    Ok(stack.as_array().outer_iter().map(imprint).collect())
 }
 
 /// The bits of a byte, the lowest first.
 static BITS: [[bool; 8]; 256] = {
     let mut bits = [[false; 8]; 256];
-    let mut byte = 0;
-    while byte < 256 {
-        let mut bit = 0;
-        while bit < 8 {
-            bits[byte][bit] = byte >> bit & 1 == 1;
-            bit += 1;
-        }
-        byte += 1;
+    let mut bit = 0;
+    while bit < 8 * 256 {
+        bits[bit / 8][bit % 8] = (bit / 8) >> (bit % 8) & 1 == 1;
+        bit += 1;
     }
     bits
 };
@@ -164,30 +82,16 @@ pub(crate) fn write(imprint: &Imprint, cells: &mut [bool]) {
     }
 }
 
-/// An imprint as an array of bool.
-pub(crate) fn mask<'py>(
-    py: Python<'py>,
-    imprint: &Imprint,
-) -> PyResult<Bound<'py, PyArray2<bool>>> {
-    let sides = [imprint.rows(), imprint.columns()].map(usize::from);
-    let array = PyArray2::zeros(py, sides, false);
-    write(imprint, array.try_readwrite()?.as_slice_mut()?);
-    Ok(array)
-}
-
 /// The threads for long work of this process. A child made by `fork` has none of its parent's, so it gets its own.
-fn threads() -> PyResult<Arc<ThreadPool>> {
+fn threads() -> Result<Arc<ThreadPool>> {
     static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
-    let mut own = locked(&POOL);
-    if let Some((process, pool)) = &*own
-        && *process == std::process::id()
-    {
+    let (mut own, process) = (locked(&POOL), std::process::id());
+    if let Some((_, pool)) = own.as_ref().filter(|(owner, _)| *owner == process) {
         return Ok(Arc::clone(pool));
     }
-    let pool = ThreadPoolBuilder::new().build();
-    let pool = Arc::new(pool.map_err(|error| io::Error::other(error.to_string()))?);
+    let pool = Arc::new(ThreadPoolBuilder::new().build()?);
     // The parent's threads cannot be ended from here.
-    std::mem::forget(own.replace((std::process::id(), Arc::clone(&pool))));
+    std::mem::forget(own.replace((process, Arc::clone(&pool))));
     Ok(pool)
 }
 
@@ -199,40 +103,30 @@ pub(crate) const TICK: Duration = Duration::from_millis(50);
 pub(crate) fn interruptible<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(&AtomicBool) -> T + Send,
-) -> PyResult<T> {
-    let pool = threads()?;
-    let stopped = AtomicBool::new(false);
-    let (result, is_done) = (
-        Mutex::new(None::<Result<T, Box<dyn Any + Send>>>),
-        Condvar::new(),
-    );
-    let interrupted = pool.in_place_scope(|scope| {
+) -> Result<T> {
+    let (stopped, result, is_done) = (AtomicBool::new(false), Mutex::new(None), Condvar::new());
+    let waits = || {
+        let waited = is_done.wait_timeout_while(locked(&result), TICK, |own| own.is_none());
+        waited.is_ok_and(|(own, _)| own.is_none())
+    };
+    threads()?.in_place_scope(|scope| {
         scope.spawn(|_| {
             let done = catch_unwind(AssertUnwindSafe(|| work(&stopped)));
             *locked(&result) = Some(done);
             is_done.notify_all();
         });
-        let waits = || {
-            let own = locked(&result);
-            let waited = is_done.wait_timeout_while(own, TICK, |own| own.is_none());
-            waited.is_ok_and(|(own, _)| own.is_none())
-        };
+        let mut interrupted = Ok(());
         while py.detach(waits) {
-            if let Err(interrupt) = py.check_signals() {
-                stopped.store(true, Ordering::Relaxed);
-                py.detach(|| while waits() {});
-                return Err(interrupt);
+            if interrupted.is_ok() {
+                interrupted = py.check_signals();
+                stopped.store(interrupted.is_err(), Ordering::Relaxed);
             }
         }
-        Ok(())
-    });
-    interrupted?;
+        interrupted
+    })?;
     let done = locked(&result).take();
-    match done {
-        Some(Ok(done)) => Ok(done),
-        Some(Err(panic)) => resume_unwind(panic),
-        None => Err(wrong("stopped before the end")),
-    }
+    let done = done.ok_or_else(|| io::Error::other("the work has no result"))?;
+    Ok(done.unwrap_or_else(|panic| resume_unwind(panic)))
 }
 
 /// [`interruptible`] work that reports its progress, within the memory that is free.
@@ -240,10 +134,10 @@ pub(crate) fn within_memory<T: Send>(
     py: Python<'_>,
     advice: &'static str,
     work: impl FnOnce(&dyn Progress) -> T + Send,
-) -> PyResult<T> {
+) -> Result<T> {
     let memory = MemoryGuard::new(advice);
     let done = interruptible(py, |stopped| {
         memory.limit(&|_| stop_if(stopped.load(Ordering::Relaxed)), work)
     })?;
-    done.map_err(PyMemoryError::new_err)
+    Ok(done.map_err(PyMemoryError::new_err)?)
 }

@@ -1,17 +1,17 @@
-//! The Python module `taxel`: arrays in, arrays out. All that is computed is computed by `taxel-core`, all files are
-//! read and written by `taxel-files`; `_main` is the program.
+//! The Python module `taxel`, below what `taxel/__init__.py` says of it: arrays in, arrays out. All that is computed is
+//! computed by `taxel-core`, all files are read and written by `taxel-files`; `main` is the program.
 //!
 //! ```text
-//! arrays   numpy arrays and imprints; long work that stops on Ctrl-C; errors
-//! shapes   Figure, Picture, Outline
-//! sensor   Sensor: touch, coverage, sweep
-//! atlas    Atlas
-//! model    train, load, Model, Answer
-//! frames   read, threshold, watch, Recording, Frame
+//! failure  what Python raises
+//! arrays   numpy arrays and imprints; long work that stops on Ctrl-C
+//! shapes   Shape: figures, pictures, outlines
+//! sensor   Sensor, and the Swept of an Atlas
+//! model    Trained, of a Model
+//! frames   recordings, thresholds, and the Watch of a live sensor
 //! ```
 
 mod arrays;
-mod atlas;
+mod failure;
 mod frames;
 mod model;
 mod sensor;
@@ -20,98 +20,49 @@ mod shapes;
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::panic::catch_unwind;
+use std::sync::atomic::Ordering;
 
-use pyo3::IntoPyObjectExt;
+use numpy::PyReadonlyArray3;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
-use pythonize::pythonize;
-use taxel_core::description::{DESCRIPTORS, Description, Value, regions};
+use rayon::prelude::*;
 use taxel_core::imprint::Imprint;
+use taxel_files::formats::{DescribedImprint, json};
 
-/// Exact tactile imprints of flat shapes, their descriptors, and what one touch can tell.
-///
-/// Arrays are numpy's: an imprint is bool, rows × columns; frames are float64, frames × rows × columns, NaN where there
-/// is no cell. Lengths are in cells, x to the right, y down; angles in degrees. What is wrong with a value is a
-/// ValueError, with a file an OSError, in the program's words.
+use crate::failure::Result;
+
 #[pymodule]
-mod taxel {
+mod _taxel {
     #[pymodule_export]
-    use crate::atlas::Atlas;
+    use crate::frames::{Watch, read, threshold};
     #[pymodule_export]
-    use crate::frames::{Frame, Recording, Watch, read, threshold, watch};
+    use crate::model::{Trained, load, train};
     #[pymodule_export]
-    use crate::model::{Answer, Model, load, train};
+    use crate::sensor::{Sensor, Swept, sweep};
     #[pymodule_export]
-    use crate::sensor::Sensor;
+    use crate::shapes::{Shape, read_outline};
     #[pymodule_export]
-    use crate::shapes::{Figure, Outline, Picture};
-    #[pymodule_export]
-    use crate::{_main, describe};
+    use crate::{describe, main};
 }
 
-/// The regions of an imprint with their descriptors: a list of dicts, or for a stack, imprints × rows × columns, a list
-/// of such lists.
-///
-/// The keys are those of `taxel describe --json`: "kind" ("exterior" or "hole"), "na", "nae", "ce" and so on; None where
-/// a descriptor does not exist.
-///
-/// Raises ValueError for another array.
+/// The answers of `taxel batch` to a stack of imprints, as JSON.
 #[pyfunction]
-fn describe<'py>(imprint: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-    let py = imprint.py();
-    let (imprints, is_stack) = arrays::imprints(imprint)?;
-    let described = |imprint: &Imprint| {
-        let own = PyList::empty(py);
-        for region in regions(imprint) {
-            own.append(record(py, &Description::of(&region))?)?;
-        }
-        Ok::<_, PyErr>(own)
-    };
-    if !is_stack {
-        return Ok(described(&imprints[0])?.into_any());
-    }
-    let all = PyList::empty(py);
-    for imprint in &imprints {
-        py.check_signals()?;
-        all.append(described(imprint)?)?;
-    }
-    Ok(all.into_any())
+fn describe(py: Python<'_>, imprints: PyReadonlyArray3<'_, bool>) -> Result<String> {
+    let imprints = arrays::imprints(&imprints)?;
+    let answers = arrays::interruptible(py, |stopped| {
+        let goes_on = |_: &&Imprint| !stopped.load(Ordering::Relaxed);
+        let imprints = imprints.par_iter().filter(goes_on);
+        let answers = imprints.map(|own| json::text(&DescribedImprint(own)));
+        answers.collect::<Vec<_>>().join(",")
+    })?;
+    Ok(format!("[{answers}]"))
 }
 
-/// A region as in the answers of `taxel batch`.
-fn record<'py>(py: Python<'py>, region: &Description) -> PyResult<Bound<'py, PyDict>> {
-    let record = PyDict::new(py);
-    record.set_item("kind", region.kind.name())?;
-    for descriptor in DESCRIPTORS.iter().filter(|descriptor| descriptor.in_answer) {
-        let value = match (descriptor.measure)(region) {
-            Value::None => py.None().into_bound(py),
-            Value::Count(count) => count.into_bound_py_any(py)?,
-            Value::Number(number) => number.into_bound_py_any(py)?,
-            Value::Point(point) => PyList::new(py, point.to_array())?.into_any(),
-            Value::Pair(pair) => PyList::new(py, pair)?.into_any(),
-            Value::Rect(rect) => pythonize(py, &rect)?,
-        };
-        record.set_item(descriptor.key, value)?;
-    }
-    Ok(record)
-}
-
-/// The command `taxel`: returns the exit status of the program.
+/// The program, which prints what it has to say; returns its exit status.
 #[pyfunction]
-fn _main(py: Python<'_>) -> PyResult<u8> {
-    let arguments: Vec<OsString> = py.import("sys")?.getattr("argv")?.extract()?;
-    // The program catches signals itself. Python only notes them, and would act after the program.
-    let signal = py.import("signal")?;
-    let interrupt = signal.getattr("SIGINT")?;
-    if signal
-        .call_method1("getsignal", (&interrupt,))?
-        .is(signal.getattr("default_int_handler")?)
-    {
-        signal.call_method1("signal", (interrupt, signal.getattr("SIG_DFL")?))?;
-    }
+fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     // A panic has said what it is, and ends the program as it does without Python.
-    let status = py.detach(|| catch_unwind(|| ::taxel::cli::run(arguments)).unwrap_or(101));
+    let status = py.detach(|| catch_unwind(|| taxel::cli::run(arguments)).unwrap_or(101));
     // The answers are written; that they cannot be flushed, the status has told.
     let _ = io::stdout().flush();
-    Ok(status)
+    status
 }

@@ -41,8 +41,6 @@ mod sweep;
 
 mod model;
 
-mod python;
-
 mod recognise;
 
 mod separate;

@@ -1,7 +1,7 @@
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from types import TracebackType
-from typing import Any, Literal, Optional, Union, final, overload
+from typing import Any, Literal, Optional, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,69 +17,54 @@ _Shape = Union[Figure, Picture, Outline]
 _Ring = Union[Sequence[tuple[float, float]], NDArray[Any], Mapping[str, float]]
 _Region = dict[str, Any]
 
-@final
 class Sensor:
+    columns: int
+    rows: int
+    threshold: float
+    pitch: Optional[float]
     def __new__(cls, columns: int = 16, rows: int = 16, threshold: float = 0.5, pitch: Optional[float] = None) -> Sensor: ...
-    @property
-    def columns(self) -> int: ...
-    @property
-    def rows(self) -> int: ...
-    @property
-    def threshold(self) -> float: ...
-    @property
-    def pitch(self) -> Optional[float]: ...
     def touch(
-        self, shape: _Shape, *, x0: Optional[ArrayLike] = None, y0: Optional[ArrayLike] = None, angle: Optional[ArrayLike] = None,
-        **values: ArrayLike,
+        self, shape: _Shape, *, x0: ArrayLike = ..., y0: ArrayLike = ..., angle: ArrayLike = ..., zoom_x: ArrayLike = ...,
+        zoom_y: ArrayLike = ..., **sizes: ArrayLike,
     ) -> NDArray[np.bool_]: ...
     def coverage(
-        self, shape: _Shape, *, x0: Optional[ArrayLike] = None, y0: Optional[ArrayLike] = None, angle: Optional[ArrayLike] = None,
-        **values: ArrayLike,
+        self, shape: _Shape, *, x0: ArrayLike = ..., y0: ArrayLike = ..., angle: ArrayLike = ..., zoom_x: ArrayLike = ...,
+        zoom_y: ArrayLike = ..., **sizes: ArrayLike,
     ) -> NDArray[np.float64]: ...
     def sweep(
         self, shape: _Shape, *, x0: Optional[_Range] = None, y0: Optional[_Range] = None, angle: Optional[_Range] = None,
         zoom_x: Optional[_Range] = None, zoom_y: Optional[_Range] = None, anchor: Literal["corner", "centre"] = "corner",
     ) -> Atlas: ...
 
-@final
 class Figure:
+    kind: str
+    sizes: dict[str, float]
     def __new__(
         cls, kind: Literal["ellipse", "rectangle", "triangle", "pentagon", "hexagon", "heptagon", "octagon"], *,
         radius_x: float = ..., radius_y: float = ..., length: float = ..., width: float = ..., side: float = ...,
         thickness: float = ...,
     ) -> Figure: ...
-    @property
-    def kind(self) -> str: ...
-    @property
-    def sizes(self) -> dict[str, float]: ...
 
-@final
 class Picture:
+    mask: NDArray[np.bool_]
     def __new__(cls, mask: NDArray[np.bool_]) -> Picture: ...
-    @property
-    def mask(self) -> NDArray[np.bool_]: ...
 
-@final
 class Outline:
-    def __new__(cls, rings: Sequence[_Ring], pitch: Optional[float] = None) -> Outline: ...
-    @staticmethod
+    rings: Sequence[_Ring]
+    pitch: Optional[float]
+    name: Optional[str]
+    def __new__(cls, rings: Sequence[_Ring], pitch: Optional[float] = None, name: Optional[str] = None) -> Outline: ...
+    @classmethod
     def read(
-        path: _Path, *, pitch: Optional[float] = None, mm_per_unit: Optional[float] = None, y_up: bool = False,
+        cls, path: _Path, *, pitch: Optional[float] = None, mm_per_unit: Optional[float] = None, y_up: bool = False,
         flatness: float = 0.001,
     ) -> Outline: ...
-    @property
-    def rings(self) -> list[Any]: ...
-    @property
-    def pitch(self) -> Optional[float]: ...
-    @property
-    def size(self) -> tuple[float, float]: ...
 
 @overload
 def describe(imprint: NDArray[np.bool_]) -> list[_Region]: ...
 @overload
 def describe(imprint: Sequence[NDArray[np.bool_]]) -> list[list[_Region]]: ...
 
-@final
 class Atlas:
     @property
     def imprints(self) -> NDArray[np.bool_]: ...
@@ -87,31 +72,17 @@ class Atlas:
     def counts(self) -> NDArray[np.uint64]: ...
     @property
     def descriptors(self) -> dict[str, NDArray[np.float64]]: ...
-    @property
-    def poses(self) -> int: ...
-    @property
-    def partly_off(self) -> int: ...
     def statistics(self) -> dict[str, dict[str, Optional[float]]]: ...
     def save(self, path: _Path) -> None: ...
-    def __len__(self) -> int: ...
 
-@final
 class Recording:
-    @property
-    def frames(self) -> NDArray[np.float64]: ...
-    @property
-    def times(self) -> Optional[NDArray[np.float64]]: ...
-    @property
-    def labels(self) -> Optional[list[Union[int, str, None]]]: ...
-    @property
-    def channel(self) -> Optional[str]: ...
-    @property
-    def unit(self) -> Optional[str]: ...
-    @property
-    def pitch(self) -> Optional[tuple[float, float]]: ...
-    @property
-    def threshold(self) -> Optional[float]: ...
-    def __len__(self) -> int: ...
+    frames: NDArray[np.float64]
+    times: Optional[NDArray[np.float64]]
+    labels: Optional[list[Union[int, str, None]]]
+    channel: Optional[str]
+    unit: Optional[str]
+    pitch: Optional[tuple[float, float]]
+    threshold: Optional[float]
 
 def read(
     path: _Path, *, channel: Optional[str] = None, rows: Optional[int] = None, columns: Optional[int] = None,
@@ -119,21 +90,15 @@ def read(
 ) -> Recording: ...
 def threshold(
     frames: ArrayLike, *, at_least: Optional[float] = None, percent: Optional[float] = None, low: Optional[float] = None,
-    high: Optional[float] = None, deviations: Optional[float] = None, least: int = 0, tare: Union[int, ArrayLike, None] = None,
+    high: Optional[float] = None, deviations: Optional[float] = None, least: int = 0, tare: Optional[ArrayLike] = None,
 ) -> NDArray[np.bool_]: ...
 
-@final
 class Frame:
-    @property
-    def values(self) -> NDArray[np.float64]: ...
-    @property
-    def time(self) -> Optional[float]: ...
-    @property
-    def number(self) -> int: ...
-    @property
-    def label(self) -> Union[int, str, None]: ...
+    values: NDArray[np.float64]
+    time: Optional[float]
+    number: int
+    label: Union[int, str, None]
 
-@final
 class Watch(Iterator[Frame]):
     @property
     def dropped(self) -> int: ...
@@ -150,21 +115,16 @@ def watch(
     label_column: Optional[str] = None, once: bool = False,
 ) -> Watch: ...
 def train(
-    shapes: Union[Mapping[str, _Shape], Sequence[_Shape]], sensor: Optional[Sensor] = None, *, x0: Optional[_Range] = None,
+    shapes: Union[Mapping[str, _Shape], Iterable[_Shape]], sensor: Optional[Sensor] = None, *, x0: Optional[_Range] = None,
     y0: Optional[_Range] = None, angle: Optional[_Range] = None, zoom_x: Optional[_Range] = None,
     zoom_y: Optional[_Range] = None, anchor: Optional[Literal["corner", "centre"]] = None, positions: int = 100,
     weights: Optional[Mapping[str, int]] = None, allow_cut: bool = False,
 ) -> Model: ...
 def load(path: _Path) -> Any: ...
 
-@final
 class Model:
-    @property
-    def labels(self) -> list[str]: ...
-    @property
-    def sensor(self) -> Sensor: ...
-    @property
-    def poses(self) -> int: ...
+    labels: list[str]
+    sensor: Sensor
     @property
     def error(self) -> float: ...
     def confusion(self) -> NDArray[np.uint64]: ...
@@ -179,30 +139,16 @@ class Model:
         tolerance: Optional[int] = None, reject: Optional[float] = None,
     ) -> list[Answer]: ...
     def separate(
-        self, *, scale: Optional[_Range] = None, pitch: Optional[_Range] = None, threshold: Optional[_Range] = None,
-        want: Optional[float] = None,
-    ) -> dict[str, Any]: ...
+        self, *, scale: Optional[_Range] = None, pitch: Optional[_Range] = None, threshold: Optional[float] = None,
+    ) -> list[dict[str, Any]]: ...
     def save(self, path: _Path) -> None: ...
 
-@final
 class Answer:
-    @property
-    def name(self) -> Optional[str]: ...
-    @property
-    def state(self) -> Literal["certain", "likely", "tied", "rejected", "unknown"]: ...
-    @property
-    def tied(self) -> list[str]: ...
-    @property
-    def ranking(self) -> list[tuple[str, float]]: ...
-    @property
-    def differs(self) -> Optional[int]: ...
-    @property
-    def pose(self) -> Optional[dict[str, float]]: ...
-    @property
-    def fit(self) -> Optional[dict[str, Any]]: ...
-    @property
-    def nearest(self) -> Optional[dict[str, Any]]: ...
-    @property
-    def at_rim(self) -> bool: ...
-    @property
-    def method(self) -> Literal["exact", "one-flip", "scan"]: ...
+    name: Optional[str]
+    state: Literal["certain", "likely", "tied", "rejected", "unknown"]
+    ranking: list[tuple[str, float]]
+    fit: Optional[str]
+    differs: Optional[int]
+    pose: Optional[dict[str, float]]
+    tied: list[str]
+    at_rim: bool
