@@ -254,7 +254,7 @@ class Atlas:
         return f"<taxel.Atlas: {len(self.counts)} imprints in {self.counts.sum()} poses>"
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Recording:
     """A recording of a real sensor; made by taxel.read.
 
@@ -314,7 +314,7 @@ def threshold(
     return _taxel.threshold(frames, (at_least, percent, low, high, deviations), least, tare).reshape(shape)
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Frame:
     """A frame of taxel.watch.
 
