@@ -38,6 +38,8 @@ fn taxels_are_toggled_and_toggles_are_undone() {
         ("<Space><Right><Space>uuUU", "NA 2 in all"),
         ("<Space><Right><Space>uu<C-r>", "NA 1 in all"),
         ("<Space>u<Right><Space>U", "nothing to redo"),
+        ("v<Right><Left>u", "NA 0 in all"),
+        ("vf<Enter><Right>", "NA 52 in all"),
     ]);
 }
 
@@ -284,6 +286,21 @@ fn quitting_asks_if_work_would_be_lost() {
     ] {
         assert!(session(nothing_lost).app().ended(), "{nothing_lost}");
     }
+}
+
+#[test]
+fn nearly_empty_and_full_matrices_have_no_impossible_numbers() {
+    let counts = ["NA     0 ", "NumX   0 ", "Area   0 "];
+    shows("", &counts);
+    shows("", &["CG     –", "P      –", "F      –"]);
+    shows(
+        "<Space>",
+        &["P      0 ", "F      0 ", "Round  –", "dir    –"],
+    );
+    shows(
+        "fr<Tab>16<Tab>16<Tab>0<Tab>0<Enter>",
+        &["NA     256", "Fill   100 %"],
+    );
 }
 
 /// Every row of the table of keys is in the help of its place, and fits on its line.

@@ -261,7 +261,7 @@ fn the_history_can_be_viewed_while_frames_arrive() {
 }
 
 #[test]
-fn the_history_is_searched_by_touches() {
+fn the_history_is_searched_by_seconds_and_by_touches() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.csv");
     let value = |frame: u32| if frame % 10 < 5 { 0 } else { 9 };
@@ -271,7 +271,11 @@ fn the_history_is_searched_by_touches() {
     let mut page = session(&format!(":watch {}<Enter>", path.display()));
     page.frames(40);
     then(&mut page, ":at-least<Space>5<Enter>", &["frame 39"]);
-    then(&mut page, "<PageUp>", &["frame 29", "10 frames behind"]);
+    then(
+        &mut page,
+        "<PageUp>",
+        &["frame 35  8.75 s", "4 frames behind"],
+    );
     then(&mut page, "<PageUp><PageDown><PageDown>", &["frame 39"]);
     then(&mut page, "[[[", &["frame 15  3.75 s"]);
     then(&mut page, "]", &["frame 25"]);

@@ -75,6 +75,7 @@ pub(in crate::tui) fn resume(app: &mut App, origin: DocumentOrigin, document: Do
 
 fn settle_elsewhere(app: &mut App) {
     app.held = None;
+    app.pen = None;
     app.paint = None;
     settle(app);
 }
@@ -152,6 +153,7 @@ pub(in crate::tui) fn is_other(app: &App, document: &Document) -> bool {
 /// were dropped. A held shape is let go.
 pub(in crate::tui) fn replace(app: &mut App, document: Document) {
     app.held = None;
+    app.pen = None;
     let present = app.history.present();
     if *present == document {
         return;

@@ -67,7 +67,7 @@ pub fn draw(theme: &Theme, buffer: &mut Buffer, items: &[Item<'_>]) {
 
 pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
     let (context, keymap) = (app.context(), &app.keymap);
-    let options = matches!(context, Context::Matrix | Context::Hold);
+    let options = matches!(context, Context::Matrix | Context::Hold | Context::Draw);
     let rows: Vec<(&Binding, &str)> = if options {
         let all = keymap.rows.iter().take(MENU).chain(help(keymap));
         all.map(|row| (row, option(row))).collect()
@@ -115,7 +115,7 @@ pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
 /// top page.
 fn useful(app: &App, row: &Binding) -> bool {
     let mut messages = row.keys.iter().map(|(_, action)| &action.message);
-    if matches!(row.context, Context::Matrix | Context::Hold) {
+    if matches!(row.context, Context::Matrix | Context::Hold | Context::Draw) {
         return messages.any(|message| is_usable(app, message));
     }
     if row.context == Context::Recognise {

@@ -30,6 +30,8 @@ pub enum Message {
     ToRow(Endpoint),
     PointAt(u8, u8),
     Toggle,
+    /// Begin to draw with the cursor, or stop.
+    Draw,
     Explain,
     Defaults,
     Undo,

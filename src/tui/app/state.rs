@@ -132,6 +132,8 @@ pub struct App {
     /// While the shape is held, so that the arrow keys move it and not the cursor: the document when it was taken.
     pub(in crate::tui) held: Option<Box<Document>>,
     pub(in crate::tui) moves: Option<MoveKind>,
+    /// While the cursor draws: the state of the taxels that it passes.
+    pub(in crate::tui) pen: Option<bool>,
     pub(in crate::tui) paint: Option<Paint>,
     pub(in crate::tui) screen: (u16, u16),
     pub theme: Theme,
@@ -168,6 +170,7 @@ impl App {
             commands: Vec::new(),
             held: None,
             moves: None,
+            pen: None,
             paint: None,
             screen: (80, 24),
             theme: options.theme,
@@ -198,6 +201,7 @@ impl App {
             (Some(page), true) if page.context() == Context::Recognise => Context::Hold,
             (Some(page), _) => page.context(),
             (None, true) => Context::Hold,
+            (None, false) if self.pen.is_some() => Context::Draw,
             (None, false) => Context::Matrix,
         }
     }

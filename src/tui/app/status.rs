@@ -138,6 +138,7 @@ fn taxel(app: &App, seen: &Reading) -> String {
         Some(state.to_owned()),
         Some(format!("NA {} in all", seen.imprint.count())),
         step.map(|_| format!("{held}step {}", app.step)),
+        app.pen.map(|_| "drawing".to_owned()),
     ];
     pieces.into_iter().flatten().collect::<Vec<_>>().join("  ")
 }

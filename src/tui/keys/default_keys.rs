@@ -59,6 +59,7 @@ pub static PLACES: &[KeyPlace] = &[
         ("()", &[&TURN_LEFT_10, &TURN_RIGHT_10], "", "turn it by 10 degrees"),
         ("zZ", &[&ZOOM_IN, &ZOOM_OUT], "", "zoom a stored shape in, out, by the current step"),
         ("+-", &[&LARGER_STEP, &SMALLER_STEP], "step", "a larger, a smaller step: 0.01, 0.1, 1"),
+        ("v", &[&DRAW], "", "draw a run of taxels with the arrows, or erase one"),
         ("S", &[&SENSOR], "", "Sensor: columns, rows, threshold, pitch"),
         ("i", &[&PANEL], "descriptors", "on a small screen: descriptors or matrix"),
         ("K", &[&EXPLAIN], "", "explain the descriptors: formula, unit, meaning"),
@@ -72,6 +73,11 @@ pub static PLACES: &[KeyPlace] = &[
         ("+=-", &[&LARGER_STEP, &LARGER_STEP, &SMALLER_STEP], "step", "a larger, a smaller step: 0.01, 0.1, 1"),
         ("g<Enter>", &[&HOLD], "let go", "let the shape go where it is"),
         ("<Esc><C-g><C-c>", &[&PUT_BACK], "put back", "put it back where it was, and let go"),
+    ]),
+    (Context::Draw, "draw", "While drawing", Context::Matrix, &[
+        ("<Left><Right><Up><Down>", &[&CURSOR_LEFT, &CURSOR_RIGHT, &CURSOR_UP, &CURSOR_DOWN],
+            "draw", "draw on, in the state of the first taxel"),
+        ("v<Enter><Esc><C-c>", &[&DRAW], "stop", "stop drawing"),
     ]),
     (Context::Explain, "explain", "Explaining descriptors", Context::Everywhere, &[
         ("<Left><Right>", &[&LEFT, &RIGHT], "descriptor", "the previous, the next descriptor"),
@@ -200,7 +206,7 @@ pub static PLACES: &[KeyPlace] = &[
         ("<Space>", &[&FREEZE], "freeze", "freeze this frame, or follow the source again"),
         ("<Left><Right><Up><Down>", &[&SCROLL_UP, &SCROLL_DOWN, &SCROLL_UP, &SCROLL_DOWN],
             "scrub", "to an earlier, a later frame"),
-        ("<PageUp><PageDown>", &[&PAGE_UP, &PAGE_DOWN], "", "ten frames back, forward"),
+        ("<PageUp><PageDown>", &[&SECOND_BACK, &SECOND_ON], "", "a second back, forward"),
         ("[]", &[&PREVIOUS_TOUCH, &NEXT_TOUCH], "", "to where the previous, the next touch begins"),
         ("<Home><End>", &[&FIRST, &LAST], "", "the oldest frame; follow the source"),
         ("<S-Left><S-Right><S-Up><S-Down>", &[&WINDOW_LEFT, &WINDOW_RIGHT, &WINDOW_UP, &WINDOW_DOWN],

@@ -15,6 +15,7 @@ use crate::tui::keys::{Arrow, Key, parse};
 pub enum Context {
     Matrix,
     Hold,
+    Draw,
     Explain,
     Form,
     List,
@@ -67,8 +68,9 @@ impl Context {
     /// The screen around a place that is a part of one.
     pub fn screen(self) -> Option<Self> {
         let screens = [Self::Explore, Self::Matrix];
+        let is_mode = matches!(self, Self::Hold | Self::Draw);
         self.outer()
-            .filter(|outer| screens.contains(outer) && self != Self::Hold)
+            .filter(|outer| screens.contains(outer) && !is_mode)
     }
 
     pub fn leads_to(self, place: Self) -> bool {

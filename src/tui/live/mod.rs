@@ -64,6 +64,8 @@ pub enum LiveMessage {
     Size(FrameSize),
     Percent,
     Freeze,
+    /// Go on by this many seconds; negative goes back.
+    Second(i8),
     /// Go to the begin of the touch this many further on; negative goes back.
     Touch(i8),
     /// Shows the next layer: raw values, tared values or imprint.

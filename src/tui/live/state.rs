@@ -343,6 +343,29 @@ impl Live {
         shown.is_some_and(|(number, _)| self.stay_at(number.saturating_add_signed(by)))
     }
 
+    /// Goes on or back by at least a second, or by ten frames if they have no times.
+    pub fn scrub_second(&mut self, by: i64) -> bool {
+        let Some((shown, frame)) = self.history.shown() else {
+            return false;
+        };
+        let Some(now) = frame.time else {
+            return self.scrub(10 * by);
+        };
+        let is_there = |number: &u64| {
+            let other = self.history.get(*number).and_then(|other| other.time);
+            other.is_some_and(|other| (other - now).abs() >= 1.0)
+        };
+        let numbers = self.history.numbers();
+        let found = if by < 0 {
+            let mut before = (numbers.start..shown.min(numbers.end)).rev();
+            before.find(is_there).unwrap_or(numbers.start)
+        } else {
+            let mut after = shown + 1..numbers.end;
+            after.find(is_there).unwrap_or(numbers.end)
+        };
+        self.stay_at(found)
+    }
+
     /// Goes on or back to the next frame in which a touch begins; false if there is none.
     pub fn scrub_touch(&mut self, by: i64) -> bool {
         let shown = self.history.shown().map_or(0, |(number, _)| number);

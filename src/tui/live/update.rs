@@ -126,6 +126,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) {
         LiveMessage::Threshold(direction) => page.step_threshold(*direction),
         LiveMessage::Percent => page.switch_unit(),
         LiveMessage::Freeze => page.freeze(),
+        LiveMessage::Second(by) => go(app, page, *by, "frame", Live::scrub_second),
         LiveMessage::Touch(by) => go(app, page, *by, "touch", Live::scrub_touch),
         LiveMessage::NextLayer => next_layer(app, page),
         LiveMessage::Plot => page.plotted ^= 1,

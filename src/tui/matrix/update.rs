@@ -13,8 +13,8 @@ use taxel_files::formats::{Drawing, ExportFormat, Name, value};
 use taxel_files::storage::{self, Existing, UNNAMED};
 
 use crate::tui::app::change::{
-    begin, change, compare_with, hold, inform, movable, put_back, refuse, replace, shift, travel,
-    turn, write_file, zoom,
+    begin, change, compare_with, hold, inform, movable, put_back, refuse, replace, settle, shift,
+    travel, turn, write_file, zoom,
 };
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::{DocumentOrigin, History};
@@ -66,6 +66,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) {
         Message::Sensor => app.open(FormDialog::sensor(app.history.present())),
         Message::Save => save(app, false),
         Message::Command => app.open(CommandDialog::over(Context::Matrix, app)),
+        Message::Draw => draw_on(app),
         Message::Explain => app.open(Explain::new(app)),
         Message::Help => app.open(Help::new(app.context())),
         Message::Cursor(arrow) => {
@@ -216,6 +217,20 @@ fn next_display(app: &mut App) {
     inform(app, text);
 }
 
+/// Begins to draw with the cursor, in the state that its taxel gets, or stops.
+fn draw_on(app: &mut App) {
+    if app.pen.take().is_some() {
+        return inform(app, "no longer drawing");
+    }
+    let (column, row) = app.cursor();
+    let active = !app.reading().imprint.get(column, row);
+    toggle(app);
+    app.pen = Some(active);
+    let what = if active { "draw" } else { "erase" };
+    let stop = app.key_of(&action::DRAW);
+    inform(app, format!("the arrows {what}, {stop} stops"));
+}
+
 fn toggle(app: &mut App) {
     let mut document = app.history.present().clone();
     let (column, row) = app.cursor();
@@ -319,6 +334,16 @@ fn change_step(app: &mut App, direction: i8) {
 fn put_cursor(app: &mut App, column: u8, row: u8) {
     let sensor = app.history.present().sensor;
     app.cursor = (column.min(sensor.columns() - 1), row.min(sensor.rows() - 1));
+    // The taxels of a run are one change, like those of a drag.
+    if let Some(active) = app.pen {
+        let (column, row) = app.cursor();
+        let mut document = app.history.present().clone();
+        if app.reading().imprint.get(column, row) != active {
+            document.edits.toggle(column, row);
+        }
+        app.history.amend(document);
+        settle(app);
+    }
 }
 
 /// Until a region is chosen, the main region is described, and `by` counts from it.
