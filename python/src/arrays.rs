@@ -76,9 +76,13 @@ static BITS: [[bool; 8]; 256] = {
 pub(crate) fn write(imprint: &Imprint, cells: &mut [bool]) {
     let rows = cells.chunks_mut(usize::from(imprint.columns()));
     for (row, word) in rows.zip(imprint.words()) {
-        for (cells, byte) in row.chunks_mut(8).zip(word.to_le_bytes()) {
-            cells.copy_from_slice(&BITS[usize::from(byte)][..cells.len()]);
+        let (eights, rest) = row.as_chunks_mut();
+        let mut bytes = word.to_le_bytes().into_iter();
+        for (cells, byte) in eights.iter_mut().zip(&mut bytes) {
+            *cells = BITS[usize::from(byte)];
         }
+        let last = BITS[usize::from(bytes.next().unwrap_or_default())];
+        rest.copy_from_slice(&last[..rest.len()]);
     }
 }
 

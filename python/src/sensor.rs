@@ -80,12 +80,11 @@ impl Sensor {
                 return Ok(());
             }
             let done = interruptible(py, |stopped| {
-                let start = || (Plane::new(sensor), Some(base.clone()));
+                let start = || (Plane::new(sensor), base.clone());
                 let chunks = cells.par_chunks_mut(CHUNK * size).enumerate();
                 chunks.try_for_each_init(start, |(plane, shape), (chunk, cells)| {
                     for (index, cells) in (chunk * CHUNK..).zip(cells.chunks_mut(size)) {
-                        let own = shape.take().map(|own| posed(own, index));
-                        compute(plane, shape.insert(own?.ok()?), cells);
+                        compute(plane, &posed(shape.clone(), index).ok()?, cells);
                     }
                     (!stopped.load(Ordering::Relaxed)).then_some(())
                 })
