@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use super::model::Place;
 use super::{Run, misused, taxel};
 
 /// Returns the path of a sample from the tests of recordings.
@@ -522,4 +523,45 @@ fn public_tables_are_read_as_expected_or_refused() {
             }
         }
     }
+}
+
+/// Touches of the rectangles of the model, of one that it does not have, and frames that are left out.
+#[test]
+fn answers_are_counted_against_the_labels_of_a_recording() {
+    let place = Place::with_model();
+    let rectangle = |length, width, angle| {
+        format!(
+            "{{\"figure\":\"rectangle\",\"length\":{length},\"width\":{width},\"x0\":4.13,\"y0\":5.47,\"angle\":{angle}}}\n"
+        )
+    };
+    let touches = [
+        ("D", rectangle(4.2, 4.2, 33.3)),
+        ("d", rectangle(4.2, 4.2, 71.9)),
+        ("c", rectangle(6.2, 3.0, 8.6)),
+        // Not what it says, and not in the model.
+        ("a", rectangle(4.2, 4.2, 12.1)),
+        ("plate", rectangle(9.0, 7.0, 40.4)),
+        ("", rectangle(4.2, 4.2, 12.1)),
+    ];
+    let lines: String = touches.iter().map(|(_, line)| line.as_str()).collect();
+    let cells = (0..16).flat_map(|row| (0..16).map(move |column| format!(",r{row}c{column}")));
+    let mut table = format!("label{}\n", cells.collect::<String>());
+    for ((label, _), answer) in touches.iter().zip(answers(&place.run("batch", &lines))) {
+        let rows = answer["imprint"].as_array().expect("rows").iter();
+        let text: String = rows.map(|row| row.as_str().expect("a row")).collect();
+        let values = text
+            .chars()
+            .map(|taxel| if taxel == '#' { ",9" } else { ",0" });
+        table += &format!("{label}{}\n", values.collect::<String>());
+    }
+    table += &format!("d{}\n", ",0".repeat(256));
+    place.write("labelled.csv", &table);
+    let named = "labelled.csv --all --at-least 5 --model r --expect-labels";
+    let lines = [
+        named,
+        &format!("{named} --json"),
+        &format!("{named} --csv"),
+        &format!("{named} --least 200"),
+    ];
+    insta::assert_snapshot!("labels", place.transcript("frames", &lines));
 }

@@ -57,7 +57,7 @@ fn keys_that_can_do_nothing_at_the_moment_are_not_shown() {
         assert_eq!(last, expected, "{keys}");
     }
     shows("f<CR>", &["c coverage  g hold"]);
-    shows("r", &["t touch   Esc close   ? help\n"]);
+    shows("r", &["t touch   o model   Esc close   ? help\n"]);
 }
 
 #[test]

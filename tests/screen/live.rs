@@ -525,7 +525,7 @@ fn a_reopened_page_uses_the_model_that_it_shows() {
     shows(&page, &["frame 4", "shape      ", "taxels differ"]);
     hides(&page, &["…", "training or"]);
     // The page does not name shapes with a model that was given up, either.
-    then(&mut page, "o<Esc>ww", &[]);
+    then(&mut page, "oooo<Esc>ww", &[]);
     page.frames(6);
     hides(&page, &["differ"]);
 }

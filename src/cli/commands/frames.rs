@@ -21,8 +21,10 @@ use taxel_core::imprint::Imprint;
 use taxel_core::matrix::Matrix;
 use taxel_core::parameter::number::short;
 use taxel_core::progress::stop_if;
+use taxel_core::recognition::Trial;
 use taxel_files::ReadError;
 use taxel_files::formats::json;
+use taxel_files::formats::name::folded;
 use taxel_files::formats::recording::{
     ChannelInfo, Format, FrameAnswer, RecordingEvent, RecordingNote, no_channel, unshaped,
 };
@@ -31,9 +33,12 @@ use taxel_files::formats::value::{counted, decimal, grouped};
 use crate::cli::arguments::flags::whole;
 use crate::cli::arguments::parameters::PitchFlag;
 use crate::cli::commands::frame_flags::FrameFlags;
+use crate::cli::commands::model::Table;
+use crate::cli::commands::model::trial::TrialReport;
 use crate::cli::commands::recognise::{FoundNamer, Namer, NamingFlags};
 use crate::cli::input::recording::{RecordingFile, damaged, refused};
 use crate::cli::output::charset::Charset;
+use crate::cli::output::evaluation::count;
 use crate::cli::output::report;
 use crate::cli::output::table::Record;
 use crate::cli::{Context, Failure};
@@ -65,11 +70,14 @@ pub(crate) struct Frames {
     /// How often taxels flip, and which are dead or stuck
     #[arg(long, help_heading = "Frames")]
     noise_report: bool,
+    /// Count the answers of --model against the labels
+    #[arg(long, help_heading = "Recognition", requires_all = ["all", "model"], conflicts_with = "heat")]
+    expect_labels: bool,
     /// Print JSON, one line per answer
     #[arg(long, conflicts_with_all = ["heat", "csv"])]
     json: bool,
     // A table has a line for each frame and no place for other answers.
-    #[arg(long, conflicts_with_all = ["noise_report", "heat", "model"])]
+    #[arg(long, conflicts_with_all = ["noise_report", "heat"])]
     #[arg(
         help = "Print CSV, one line per frame: force, contact,\ncentre of pressure, descriptors"
     )]
@@ -103,6 +111,7 @@ Examples:
   taxel frames recording.csv --csv --tare 2 > force.csv
   taxel frames recording.csv --frame 3 --low 5 --high 20 --heat --ascii
   taxel frames recording.csv --peak --at-least 10 --model parts --noise 0.01
+  taxel frames labelled.csv --all --at-least 10 --model parts --expect-labels
   taxel frames recording.csv --noise-report --at-least 10
   taxel frames plain.csv --rows 4 --columns 5 --label-column 21 \\
     --time-column 22:ms --crop 1,0,3x3 --json";
@@ -142,6 +151,11 @@ impl Frames {
 
     /// If an error occurs, the answers made before it are still printed.
     pub(crate) fn run(self, cx: &Context) -> Result<(), Failure> {
+        if self.csv && self.naming.model.is_some() && !self.expect_labels {
+            return Err(Failure::usage(
+                "the argument '--csv' cannot be used with '--model <MODEL>', except with --expect-labels",
+            ));
+        }
         let pipeline = self
             .reading
             .pipeline(&cx.settings.watch_request().pipeline)?;
@@ -441,11 +455,13 @@ impl Answering<'_> {
                 // If frames are missing, the damage is the reason.
                 Err(failure) => return Err(damage.unwrap_or(failure)),
             };
-            if self.asked.csv && index == channels.start {
+            if self.asked.csv && !self.asked.expect_labels && index == channels.start {
                 self.write(FrameAnswer::csv_header())?;
             }
             answered |= if self.asked.noise_report {
                 self.report_noise(&mut recording, index, &mut pipeline)?
+            } else if let Some(namer) = self.namer.as_ref().filter(|_| self.asked.expect_labels) {
+                self.compare_labels(&mut recording, index, &mut pipeline, namer)?
             } else {
                 self.answer(&mut recording, (index, channel), &numbers, &mut pipeline)?
             };
@@ -545,7 +561,7 @@ impl Answering<'_> {
         }
         // Force and contact exist without a threshold, too. There is no default: the meaning of values differs from
         // sensor to sensor.
-        if pipeline.rule().is_none() && !self.asked.csv {
+        if pipeline.rule().is_none() && (!self.asked.csv || self.asked.expect_labels) {
             return Err(self.refused(
                 "the recording has no threshold of its own: set one with --at-least, --percent, \
                  --low and --high, or --deviations",
@@ -719,6 +735,54 @@ impl Answering<'_> {
             (Some(why), None) => Ok((None, Some(why))),
             (Some(why), Some(_)) => Err(self.refused(format!("--pitch: {why}"))),
         }
+    }
+
+    /// Names the frames of a channel that have a label and an active taxel, and counts the answers against the labels.
+    fn compare_labels(
+        &self,
+        recording: &mut RecordingFile,
+        index: usize,
+        pipeline: &mut Pipeline,
+        namer: &Namer,
+    ) -> Result<bool, Failure> {
+        let mut trial = Trial::new(&namer.model);
+        let (mut unlabelled, mut empty) = (0_u64, 0_u64);
+        self.each(recording, index, pipeline, |frame, processed| {
+            let imprint = processed.imprint.filter(|imprint| !imprint.is_empty());
+            match (&frame.label, imprint) {
+                (None, _) => unlabelled += 1,
+                (Some(_), None) => empty += 1,
+                (Some(label), Some(imprint)) => {
+                    let label = label.to_string();
+                    let own = folded(&label);
+                    let answer = namer.answer(&[imprint]).answer;
+                    trial.add(&label, |name| folded(name) == own, &answer);
+                }
+            }
+            Ok(ControlFlow::Continue(()))
+        })?;
+        let labelled = trial.known.touches() + trial.foreign.touches();
+        if labelled == 0 {
+            return Err(self.refused("--expect-labels: no frame has a label and an active taxel"));
+        }
+        let report = TrialReport {
+            trial: &trial,
+            noun: "frame",
+            note: format!(
+                "left out: {} without a label, {} without an active taxel",
+                counted(unlabelled, "frame"),
+                counted(empty, "frame")
+            ),
+            keys: vec![
+                ("frames", count(labelled)),
+                ("unlabelled", unlabelled.into()),
+                ("empty", empty.into()),
+            ],
+        };
+        let table = self.asked.csv.then(|| report.csv()).flatten();
+        let json = || self.asked.json.then(|| report.json());
+        self.write(table.or_else(json).unwrap_or_else(|| report.text()))?;
+        Ok(true)
     }
 
     /// Reports which taxels of a channel flip or are stuck. Returns false, and reports nothing, if the channel has no frames.

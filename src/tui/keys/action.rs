@@ -114,6 +114,7 @@ pub static PREVIOUS_ANGLE: Action = action("previous-angle", Explore(Angle(-1)))
 pub static NEXT_ZOOM: Action = action("next-zoom", Explore(ExploreMessage::Zoom));
 pub static RECOGNISE: Action = action("recognise", Recognise(RecogniseMessage::Open));
 pub static RANDOM_TOUCH: Action = action("random-touch", Recognise(RecogniseMessage::Touch));
+pub static NEXT_MODEL: Action = action("next-model", Recognise(RecogniseMessage::NextModel));
 pub static KEEP: Action = action("keep", Recognise(RecogniseMessage::Keep));
 pub static FORGET: Action = action("forget", Recognise(RecogniseMessage::Forget));
 pub static POSES: Action = action("poses", Message::Layer(Layer::Fit));

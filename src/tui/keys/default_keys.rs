@@ -194,6 +194,7 @@ pub static PLACES: &[KeyPlace] = &[
     (Context::Recognise, "recognise", "Recognising", Context::Matrix, &[
         ("t", &[&RANDOM_TOUCH], "touch", "a random touch of a shape of the model"),
         ("ax", &[&KEEP, &FORGET], "keep, forget", "keep this touch as one of several; forget them"),
+        ("o", &[&NEXT_MODEL], "model", "next model: built in, then your own"),
         ("i", &[&PANEL], "answer", "on a narrow screen: the answer or the matrix"),
         ("P", &[&POSES], "", "the outline of the fitted shape"),
         ("<Enter>", &[&ACCEPT], "", "read or train the model again"),
@@ -220,7 +221,7 @@ pub static PLACES: &[KeyPlace] = &[
         ("r", &[&RECORD], "record", "record all frames in a file, or stop recording"),
         ("w", &[&WATCH_AGAIN], "again", "play again; reopen a stream that has ended"),
         ("m", &[&MARK_FRAME], "", "mark this frame, or remove its mark"),
-        ("o", &[&NAME_SHAPE], "name", "name the shape, or name it no more"),
+        ("o", &[&NAME_SHAPE], "name", "name the shape by the next model, or by none"),
         ("<Enter>", &[&ACCEPT], "to matrix", "take the imprint to the matrix"),
         (":", &[&COMMAND], "", "type a command, such as at-least 10 for the threshold"),
         ("?", &[&HELP], "help", "these keys"),

@@ -12,6 +12,7 @@ use crate::tui::app::{App, inform, refuse};
 use crate::tui::jobs::{Slot, answer};
 use crate::tui::live::update;
 use crate::tui::live::view::{Lines, SHAPE};
+use crate::tui::recognise::next_model;
 use crate::tui::widget::Theme;
 
 /// The model that names imprints, and its last answer.
@@ -123,15 +124,19 @@ pub(crate) fn library_changed(app: &mut App) {
     }
 }
 
-/// Names the imprints of the source, or names them no more.
-pub(super) fn switch(app: &mut App, names: &ShapeNames) {
-    let choice = names.choice.is_none().then(|| names.asked.clone());
-    let text = match &choice {
-        Some(choice) => format!("shapes are named by {choice}"),
-        None => "shapes are not named".to_owned(),
-    };
-    app.jobs.later(move |app| {
-        name_by(app, choice);
-        inform(app, text);
-    });
+/// Names the imprints of the source by the next model; after the last one, they are named no more.
+pub(super) fn name_by_next(app: &mut App, names: &ShapeNames) {
+    next_model(
+        app,
+        names.asked.clone(),
+        names.choice.clone(),
+        |app, next| {
+            let text = match &next {
+                Some(choice) => format!("shapes are named by {choice}"),
+                None => "shapes are not named".to_owned(),
+            };
+            name_by(app, next);
+            inform(app, text);
+        },
+    );
 }

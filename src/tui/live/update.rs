@@ -151,7 +151,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) {
             Some((number, false)) => inform(app, format!("frame {number}: mark removed")),
             None => refuse(app, NO_FRAME),
         },
-        LiveMessage::NameShape => names::switch(app, &page.names),
+        LiveMessage::NameShape => names::name_by_next(app, &page.names),
         LiveMessage::Again => match page.check_again() {
             Ok(()) => restart(app, page),
             Err(refused) => refuse(app, refused),

@@ -18,9 +18,9 @@ use crate::tui::app::{
 use crate::tui::jobs::{self, answer};
 use crate::tui::keys::{Context, action};
 use crate::tui::matrix;
-use crate::tui::recognise::RecogniseMessage;
 use crate::tui::recognise::panel;
 use crate::tui::recognise::trained::TrainedModel;
+use crate::tui::recognise::{RecogniseMessage, next_model};
 
 pub(crate) struct Recognition {
     pub(crate) choice: ModelChoice,
@@ -213,6 +213,14 @@ fn carry_out(app: &mut App, asked: &RecogniseMessage, is_open: bool) {
     if let RecogniseMessage::Seed(seed) = asked {
         app.recognition.random = Pcg64::seed_from_u64(*seed);
         return inform(app, format!("random touches begin with the seed {seed}"));
+    }
+    if *asked == RecogniseMessage::NextModel {
+        let now = app.recognition.choice().clone();
+        return next_model(app, ModelChoice::Library, Some(now), |app, next| {
+            let next = next.unwrap_or(ModelChoice::Library);
+            inform(app, next.to_string());
+            act(app, &RecogniseMessage::Choose(next));
+        });
     }
     let choice = match asked {
         RecogniseMessage::Choose(choice) => Some(choice.clone()),

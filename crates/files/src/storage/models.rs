@@ -77,16 +77,24 @@ pub fn save_model(model: &Model, path: &Path, existing: Existing) -> Result<(), 
     file::write(path, &file_content(model), existing)
 }
 
-/// The user's models: files `NAME.npz` in the folder `models` of a library.
+/// The user's models: files `NAME.npz` in the folder `models` of a library. Models of earlier versions, which kept them
+/// in a folder `models` beside the library, are found there, too, but no file is written there.
 ///
 /// Upper and lower case count as the same, as for shapes, so a folder can move to a file system that ignores case.
 #[derive(Clone, Debug)]
-pub struct ModelFolder(PathBuf);
+pub struct ModelFolder {
+    own: PathBuf,
+    earlier: PathBuf,
+}
 
 impl ModelFolder {
     /// The models of the library in a folder.
     pub fn of(library: &Path) -> Self {
-        Self(library.join(FOLDER))
+        let whole = std::path::absolute(library).unwrap_or_else(|_| library.to_owned());
+        Self {
+            own: library.join(FOLDER),
+            earlier: whole.with_file_name(FOLDER),
+        }
     }
 
     /// The file of a model; None if there is no model of that name.
@@ -103,13 +111,16 @@ impl ModelFolder {
     /// # Errors
     /// The system's error, except if the folder does not exist.
     pub fn list(&self) -> Result<Vec<(Name, PathBuf)>, FileError> {
-        let paths = paths_in(&self.0)?;
+        let mut paths = paths_in(&self.own)?;
+        paths.extend(paths_in(&self.earlier).unwrap_or_default());
         let named = |path: PathBuf| {
             let name = Name::new(path.file_stem()?.to_str()?).ok()?;
             (path.extension()? == ENDING).then_some((name, path))
         };
         let mut models: Vec<(Name, PathBuf)> = paths.into_iter().filter_map(named).collect();
+        // Of two of the same name, the one in the library comes first.
         models.sort_by_cached_key(|(name, _)| (folded(name.as_str()), name.clone()));
+        models.dedup_by(|next, first| next.0 == first.0);
         Ok(models)
     }
 
@@ -124,14 +135,15 @@ impl ModelFolder {
     /// # Errors
     /// Those of [`Self::save`].
     pub fn check(&self, name: &Name, existing: Existing) -> Result<(), FileError> {
-        make_folder(&self.0)?;
+        make_folder(&self.own)?;
         check_writable(&self.target(name), existing)
     }
 
     /// The file that a model of this name gets.
     fn target(&self, name: &Name) -> PathBuf {
-        let new = || self.0.join(format!("{name}.{ENDING}"));
-        self.find(name).unwrap_or_else(new)
+        let new = || self.own.join(format!("{name}.{ENDING}"));
+        let own = self.find(name).filter(|path| path.starts_with(&self.own));
+        own.unwrap_or_else(new)
     }
 
     /// Writes a model under a name, and makes the folder for it. Returns the path.
@@ -145,7 +157,7 @@ impl ModelFolder {
         existing: Existing,
     ) -> Result<PathBuf, FileError> {
         let path = self.target(name);
-        make_folder(&self.0)?;
+        make_folder(&self.own)?;
         save_model(model, &path, existing)?;
         Ok(path)
     }
@@ -544,12 +556,28 @@ mod tests {
     }
 
     #[test]
+    fn a_model_beside_the_library_is_found_but_none_is_written_there() {
+        let (folder, models) = folder_and_models();
+        let earlier = folder.path().join("models");
+        fs::create_dir(&earlier).expect("made");
+        let model = training(4.0).run().expect("not stopped");
+        save_model(&model, &earlier.join("set.npz"), Existing::Kept).expect("written");
+        let name = Name::new("set").expect("a name");
+        let found = models.find(&name).expect("it is there");
+        assert!(load_model(&found).is_ok());
+        let path = models.save(&model, &name, Existing::Kept).expect("written");
+        assert_eq!(path, folder.path().join("library/models/set.npz"));
+        assert_eq!(paths_in(&earlier).expect("read"), [earlier.join("set.npz")]);
+        assert_eq!(models.find(&name), Some(path));
+    }
+
+    #[test]
     fn a_file_in_place_of_the_folder_is_reported() {
         let (folder, models) = folder_and_models();
         fs::create_dir(folder.path().join("library")).expect("made");
-        fs::write(&models.0, "").expect("written");
+        fs::write(&models.own, "").expect("written");
         let refused = models.list().expect_err("a file").to_string();
-        let expected = format!("{}: cannot read the folder: ", models.0.display());
+        let expected = format!("{}: cannot read the folder: ", models.own.display());
         assert!(refused.starts_with(&expected), "{refused}");
         let name = Name::new("set").expect("a name");
         assert!(models.check(&name, Existing::Kept).is_err());
@@ -669,20 +697,20 @@ mod tests {
     #[test]
     fn models_are_listed_by_alphabet_and_an_exact_name_comes_first() {
         let (_folder, models) = folder_and_models();
-        fs::create_dir_all(&models.0).expect("made");
+        fs::create_dir_all(&models.own).expect("made");
         for name in ["Bar", "apple", "cup", "CUP"] {
-            fs::write(models.0.join(format!("{name}.npz")), "").expect("written");
+            fs::write(models.own.join(format!("{name}.npz")), "").expect("written");
         }
         let names = models.names();
         // There is only one cup if the file system ignores case.
         let shown: Vec<&str> = names.iter().map(Name::as_str).take(2).collect();
         assert_eq!(shown, ["apple", "Bar"]);
         for name in names {
-            let file = models.0.join(format!("{name}.npz"));
+            let file = models.own.join(format!("{name}.npz"));
             assert_eq!(models.find(&name), Some(file));
         }
         let other_case = Name::new("BAR").expect("a name");
-        assert_eq!(models.find(&other_case), Some(models.0.join("Bar.npz")));
+        assert_eq!(models.find(&other_case), Some(models.own.join("Bar.npz")));
     }
 
     #[test]

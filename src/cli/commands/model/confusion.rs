@@ -16,7 +16,7 @@ use taxel_core::recognition::{
     NamedShape, RandomTouches, Rounding,
 };
 use taxel_files::formats::name::folded;
-use taxel_files::formats::value::{grouped, percent, percentage};
+use taxel_files::formats::value::{counted, grouped, percent, percentage};
 use taxel_files::formats::{ConfusionMap, json};
 use taxel_files::storage::FoundModel;
 
@@ -281,8 +281,15 @@ impl Confusion {
         let trial = watched((touches.count(), "touches"), self.table.quiet, |progress| {
             touches.answer(model, &answer, progress)
         })?;
-        let trial = &trial;
-        let report = TrialReport { trial, each, seed };
+        let report = TrialReport {
+            trial: &trial,
+            noun: "touch",
+            note: format!(
+                "{} of each shape, seed {seed}",
+                counted(each, "random touch")
+            ),
+            keys: vec![("test", each.into()), ("seed", seed.into())],
+        };
         self.table.give(&report, self.csv, cx)
     }
 

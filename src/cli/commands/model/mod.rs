@@ -9,7 +9,7 @@ mod keeping;
 mod noise;
 mod separate;
 mod train;
-mod trial;
+pub(crate) mod trial;
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -125,7 +125,7 @@ pub(crate) struct TableFlags {
 }
 
 /// An answer in its forms.
-trait Table {
+pub(crate) trait Table {
     fn text(&self) -> String;
 
     fn json(&self) -> String;

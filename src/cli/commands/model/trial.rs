@@ -1,4 +1,5 @@
-//! What `taxel model confusion --test` says, in words, as a table and as JSON.
+//! What a trial of a model says, in words, as a table and as JSON: of `taxel model confusion --test`, and of
+//! `taxel frames --expect-labels`.
 
 use std::collections::BTreeMap;
 
@@ -12,19 +13,22 @@ use taxel_files::formats::value::{counted, percent};
 use crate::cli::commands::model::Table;
 use crate::cli::commands::model::confusion::square;
 use crate::cli::output::evaluation::{cell, count, matrix_csv, shares};
-use crate::cli::output::table::table;
+use crate::cli::output::table::{Record, table};
 
-pub(super) struct TrialReport<'a> {
-    pub(super) trial: &'a Trial,
-    /// The touches of each shape.
-    pub(super) each: u64,
-    pub(super) seed: u64,
+pub(crate) struct TrialReport<'a> {
+    pub(crate) trial: &'a Trial,
+    /// What was named, such as `touch`.
+    pub(crate) noun: &'static str,
+    /// How the touches were drawn, or which frames are left out.
+    pub(crate) note: String,
+    /// The same at the beginning of JSON.
+    pub(crate) keys: Vec<(&'static str, Value)>,
 }
 
 #[derive(Serialize)]
 struct TrialJson<'a> {
-    test: u64,
-    seed: u64,
+    #[serde(flatten)]
+    keys: Record<'a>,
     #[serde(flatten)]
     known: TallyJson<'a>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -89,7 +93,7 @@ impl TrialReport<'_> {
 }
 
 /// How many touches are right, wrong and unknown, and how well shapes fit them.
-fn summary(tally: &Tally, of: &str, counts: &[(&str, u128, &str)]) -> String {
+fn summary(tally: &Tally, noun: &str, of: &str, counts: &[(&str, u128, &str)]) -> String {
     let touches = tally.touches();
     let exact = tally.differs.get(&0).copied().unwrap_or_default();
     let median = tally.median_differs().map_or(String::new(), |median| {
@@ -97,7 +101,7 @@ fn summary(tally: &Tally, of: &str, counts: &[(&str, u128, &str)]) -> String {
     });
     let exact = ("fits exactly", exact.into(), &*median);
     let counts = counts.iter().copied().chain([exact]);
-    let title = format!("{} of {of}\n", counted(touches, "touch"));
+    let title = format!("{} of {of}\n", counted(touches, noun));
     title + &shares(touches, counts)
 }
 
@@ -116,7 +120,7 @@ impl Table for TrialReport<'_> {
             ("wrong", known.wrong(), ""),
             ("unknown", known.unknown(), ""),
         ];
-        let mut text = summary(known, "shapes of the model", &counts);
+        let mut text = summary(known, self.noun, "shapes of the model", &counts);
         if let Some(foreign) = self.foreign() {
             let counts = [
                 (
@@ -126,10 +130,9 @@ impl Table for TrialReport<'_> {
                 ),
                 ("wrong", foreign.wrong(), ""),
             ];
-            text += &summary(foreign, "foreign shapes", &counts);
+            text += &summary(foreign, self.noun, "foreign shapes", &counts);
         }
-        let (each, seed) = (counted(self.each, "random touch"), self.seed);
-        text + &format!("{each} of each shape, seed {seed}\n\n") + &self.confusion()
+        text + &self.note + "\n\n" + &self.confusion()
     }
 
     fn csv(&self) -> Option<String> {
@@ -141,8 +144,7 @@ impl Table for TrialReport<'_> {
     fn json(&self) -> String {
         let known = &self.trial.known;
         let answer = TrialJson {
-            test: self.each,
-            seed: self.seed,
+            keys: Record(self.keys.clone()),
             known: TallyJson::of(known, Some(known.unknown())),
             foreign: self.foreign().map(|foreign| TallyJson::of(foreign, None)),
         };
