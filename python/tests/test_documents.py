@@ -25,6 +25,12 @@ def test_the_blocks_of_the_page_run_one_after_the_other(samples, monkeypatch, ca
     assert 0 < own["model"].error < 0.2
 
 
+def test_the_block_of_the_readme_prints_what_it_says(capsys):
+    block = (ROOT / "README.md").read_text(encoding="utf-8").split("```python\n")[1].split("```")[0]
+    exec(block, {})
+    assert capsys.readouterr().out == "12\n"
+
+
 def output_of(name, *arguments):
     program = [sys.executable, ROOT / "examples/python" / name, *arguments]
     done = subprocess.run(program, capture_output=True, text=True)
