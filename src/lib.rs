@@ -1,6 +1,15 @@
-//! The program taxel: `cli` is the command line, `tui` the screen;
-//! `frames` is what both do with frames of a sensor, `naming` how both name touches. They are public only for tests, benchmarks and
-//! other packages of the program; the libraries are `taxel-core` and `taxel-files`.
+//! The program taxel, on the libraries `taxel-core` and `taxel-files`. Its parts are public only for tests, benchmarks and
+//! the Python module.
+//!
+//! ```text
+//! main.rs -> cli::run   the command line: a command is a file in cli/commands/, and without one the screen opens
+//! tui                   the screen
+//! frames                what both do with the frames of a sensor
+//! naming                how both name touches
+//! ```
+//!
+//! To follow one command to the bottom, read `cli/commands/sweep.rs`, then `taxel_core::pose::PoseGrid`, then
+//! `taxel_core::sweep`.
 
 // Compiles and runs the examples of the guide to the library as tests of the documentation.
 #[cfg(doctest)]

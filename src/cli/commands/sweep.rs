@@ -40,10 +40,11 @@ const EXAMPLES: &str = "\
 A range is START:END:STEP with the end included, or one number; decimals are
 exact. By default, x0 and y0 run over one cell in steps of 0.01, at every whole
 degree: 3.6 million poses. The cell of a figure starts at x0 = y0 = 5; that of a
-picture or an outline is the cell that it lies in. If the sensor would cut off the shape there
-at some angle, taxel takes the cell nearest to the middle of the sensor in which
-nothing is cut off. The summary states the ranges. Figures are solid without
---thickness. A picture keeps its own sensor, unless flags change it.
+picture or an outline is the cell that it lies in. If the sensor would cut off
+the shape there at some angle, taxel takes the cell nearest to the middle of the
+sensor in which nothing is cut off. The summary states the ranges. Figures are
+solid without --thickness. A picture keeps its own sensor, unless flags change
+it.
 
 Examples:
   taxel sweep rectangle --length 6 --width 3
@@ -131,6 +132,7 @@ impl Sweep {
             }
         })?;
         let poses = poses.map(PoseFile::finish).transpose().map(Option::flatten);
+        // A sweep that was stopped leaves no file and no answer; why a file failed says more than the signal.
         if !result.complete() {
             poses?;
             return Err(signals.failure());
