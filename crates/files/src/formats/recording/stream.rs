@@ -163,7 +163,8 @@ fn look(
                 Some(format) => Ok(Some(format)),
                 None if head.is_empty() || options.is_joined && has_ended => Ok(None),
                 None if options.size.is_none() && is_binary => {
-                    let message = "bytes of no known format; those of a board do not state their size";
+                    let message =
+                        "bytes of no known format; those of a board do not state their size";
                     Err(ReadError::new(message).of_kind(ReadErrorKind::Unsized))
                 }
                 None => Err(refused(head)),
