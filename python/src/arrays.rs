@@ -1,16 +1,19 @@
 //! Between numpy arrays and imprints; long work that releases the interpreter and stops on Ctrl-C.
 
-use std::io;
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::array::from_fn;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Condvar, Mutex};
+use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::sync::{Arc, LazyLock, Mutex};
 use std::time::Duration;
 
 use numpy::ndarray::ArrayView2;
 use numpy::prelude::*;
-use numpy::{Element, IxDyn, PyArray1, PyArrayDyn, PyReadonlyArray3, dtype};
+use numpy::{Element, IxDyn, PyArray1, PyArrayDyn, PyReadonlyArray3};
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
+use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use taxel_core::imprint::Imprint;
 use taxel_core::lock::locked;
@@ -19,20 +22,6 @@ use taxel_core::sensor::MatrixSize;
 use taxel_files::memory::MemoryGuard;
 
 use crate::failure::Result;
-
-/// An array that a function fills. It is made by numpy, whose errors say what is too large.
-pub(crate) fn filled<'py, T: Element>(
-    py: Python<'py>,
-    shape: &[usize],
-    fill: impl FnOnce(&mut [T]) -> Result<()>,
-) -> Result<Bound<'py, PyArrayDyn<T>>> {
-    let zeros = py
-        .import("numpy")?
-        .call_method1("zeros", (shape, dtype::<T>(py)))?;
-    let array = zeros.cast_into().map_err(PyErr::from)?;
-    fill(PyArrayMethods::try_readwrite(&array)?.as_slice_mut()?)?;
-    Ok(array)
-}
 
 /// The values of a vector as an array of this shape, without a copy.
 pub(crate) fn shaped<'py, T: Element>(
@@ -45,10 +34,8 @@ pub(crate) fn shaped<'py, T: Element>(
 
 /// The imprints in a stack of them.
 pub(crate) fn imprints(stack: &PyReadonlyArray3<'_, bool>) -> Result<Vec<Imprint>> {
-    let size = MatrixSize::new(
-        u8::try_from(stack.shape()[2])?,
-        u8::try_from(stack.shape()[1])?,
-    )?;
+    let [rows, columns] = [1, 2].map(|axis| u8::try_from(stack.shape()[axis]));
+    let size = MatrixSize::new(columns?, rows?)?;
     let imprint = |rows: ArrayView2<'_, bool>| {
         let mut imprint = Imprint::empty(size);
         for (row, cells) in rows.outer_iter().enumerate() {
@@ -62,15 +49,8 @@ pub(crate) fn imprints(stack: &PyReadonlyArray3<'_, bool>) -> Result<Vec<Imprint
 }
 
 /// The bits of a byte, the lowest first.
-static BITS: [[bool; 8]; 256] = {
-    let mut bits = [[false; 8]; 256];
-    let mut bit = 0;
-    while bit < 8 * 256 {
-        bits[bit / 8][bit % 8] = (bit / 8) >> (bit % 8) & 1 == 1;
-        bit += 1;
-    }
-    bits
-};
+static BITS: LazyLock<[[bool; 8]; 256]> =
+    LazyLock::new(|| from_fn(|byte| from_fn(|bit| byte >> bit & 1 == 1)));
 
 /// Writes an imprint to the cells of its matrix, row by row.
 pub(crate) fn write(imprint: &Imprint, cells: &mut [bool]) {
@@ -88,15 +68,12 @@ pub(crate) fn write(imprint: &Imprint, cells: &mut [bool]) {
 
 /// The threads for long work of this process. A child made by `fork` has none of its parent's, so it gets its own.
 fn threads() -> Result<Arc<ThreadPool>> {
-    static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
-    let (mut own, process) = (locked(&POOL), std::process::id());
-    if let Some((_, pool)) = own.as_ref().filter(|(owner, _)| *owner == process) {
-        return Ok(Arc::clone(pool));
+    static POOLS: Mutex<BTreeMap<u32, Arc<ThreadPool>>> = Mutex::new(BTreeMap::new());
+    let (mut pools, process) = (locked(&POOLS), std::process::id());
+    if let Entry::Vacant(own) = pools.entry(process) {
+        own.insert(Arc::new(ThreadPoolBuilder::new().build()?));
     }
-    let pool = Arc::new(ThreadPoolBuilder::new().build()?);
-    // The parent's threads cannot be ended from here.
-    std::mem::forget(own.replace((process, Arc::clone(&pool))));
-    Ok(pool)
+    Ok(Arc::clone(&pools[&process]))
 }
 
 /// The time after which Ctrl-C is looked for.
@@ -108,38 +85,67 @@ pub(crate) fn interruptible<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(&AtomicBool) -> T + Send,
 ) -> Result<T> {
-    let (stopped, result, is_done) = (AtomicBool::new(false), Mutex::new(None), Condvar::new());
-    let waits = || {
-        let waited = is_done.wait_timeout_while(locked(&result), TICK, |own| own.is_none());
-        waited.is_ok_and(|(own, _)| own.is_none())
-    };
-    threads()?.in_place_scope(|scope| {
-        scope.spawn(|_| {
-            let done = catch_unwind(AssertUnwindSafe(|| work(&stopped)));
-            *locked(&result) = Some(done);
-            is_done.notify_all();
-        });
-        let mut interrupted = Ok(());
-        while py.detach(waits) {
-            if interrupted.is_ok() {
-                interrupted = py.check_signals();
-                stopped.store(interrupted.is_err(), Ordering::Relaxed);
+    let (stopped, threads) = (AtomicBool::new(false), threads()?);
+    let wait = || {
+        let (sender, done) = sync_channel(1);
+        let (stopped, work) = (&stopped, || work(&stopped));
+        threads.in_place_scope(|scope| {
+            // A panic drops the sender, and goes on when the scope ends.
+            scope.spawn(move |_| drop(sender.send(work())));
+            loop {
+                match done.recv_timeout(TICK) {
+                    Err(RecvTimeoutError::Timeout) => Python::attach(|py| {
+                        let signals = py.check_signals();
+                        stopped.store(signals.is_err(), Ordering::Relaxed);
+                        signals
+                    })?,
+                    done => return Ok(done?),
+                }
             }
-        }
-        interrupted
+        })
+    };
+    py.detach(wait)
+}
+
+/// What `answer` says of each imprint in a stack, on all cores.
+pub(crate) fn answers<T: Send>(
+    py: Python<'_>,
+    stack: &PyReadonlyArray3<'_, bool>,
+    answer: impl Fn(&Imprint) -> T + Sync + Send,
+) -> Result<Vec<T>> {
+    let imprints = imprints(stack)?;
+    interruptible(py, |stopped| {
+        let goes_on = |_: &&Imprint| !stopped.load(Ordering::Relaxed);
+        imprints.par_iter().filter(goes_on).map(answer).collect()
+    })
+}
+
+/// Fills the parts of an array, `size` elements each, on all cores; fails as the first part that cannot be filled.
+pub(crate) fn fill_each<T: Send, S>(
+    py: Python<'_>,
+    (elements, size): (&mut [T], usize),
+    start: impl Fn() -> S + Sync + Send,
+    fill: impl Fn(&mut S, usize, &mut [T]) -> Result<()> + Sync + Send,
+) -> Result<()> {
+    let failure = interruptible(py, |stopped| {
+        let parts = elements.par_chunks_mut(size).enumerate().with_min_len(64);
+        let filled = parts.map_init(start, |state, (index, part)| {
+            if stopped.load(Ordering::Relaxed) {
+                return Err("stopped".into());
+            }
+            fill(state, index, part)
+        });
+        filled.find_map_first(Result::err)
     })?;
-    let done = locked(&result).take();
-    let done = done.ok_or_else(|| io::Error::other("the work has no result"))?;
-    Ok(done.unwrap_or_else(|panic| resume_unwind(panic)))
+    failure.map_or(Ok(()), Err)
 }
 
 /// [`interruptible`] work that reports its progress, within the memory that is free.
 pub(crate) fn within_memory<T: Send>(
     py: Python<'_>,
-    advice: &'static str,
     work: impl FnOnce(&dyn Progress) -> T + Send,
 ) -> Result<T> {
-    let memory = MemoryGuard::new(advice);
+    let memory = MemoryGuard::new("take coarser steps, shorter ranges or fewer shapes");
     let done = interruptible(py, |stopped| {
         memory.limit(&|_| stop_if(stopped.load(Ordering::Relaxed)), work)
     })?;

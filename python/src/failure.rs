@@ -1,6 +1,5 @@
 //! Why a call fails: what Python raises.
 
-use std::any::Any;
 use std::error::Error;
 use std::io;
 use std::path::Path;
@@ -12,15 +11,11 @@ use taxel_files::{ReadError, ReadErrorKind};
 
 pub(crate) type Result<T> = std::result::Result<T, Failure>;
 
-/// An exception with the program's sentence: an `OSError` if the system refused a file, otherwise a `ValueError`.
+/// What Python raises: an `OSError` if the system refused a file, otherwise a `ValueError`, with the program's sentence.
 #[derive(Debug)]
-pub(crate) struct Failure(pub(crate) PyErr);
+pub(crate) struct Failure(pub(crate) Box<dyn Error + Send + Sync>);
 
 impl Failure {
-    pub(crate) fn new(text: impl Into<String>) -> Self {
-        Self(PyValueError::new_err(text.into()))
-    }
-
     /// The failure to read a file.
     pub(crate) fn of(path: impl AsRef<Path>, error: impl Into<ReadError>) -> Self {
         let (name, mut error) = (path.as_ref().to_string_lossy(), error.into());
@@ -34,33 +29,23 @@ impl Failure {
     }
 }
 
-impl<E: Error + 'static> From<E> for Failure {
+impl<E: Into<Box<dyn Error + Send + Sync>>> From<E> for Failure {
     fn from(error: E) -> Self {
-        let text = error.to_string();
-        let mut error = Some(error);
-        let any: &mut dyn Any = &mut error;
-        if let Some(raised) = any.downcast_mut::<Option<PyErr>>().and_then(Option::take) {
-            return Self(raised);
-        }
-        let kind = match any.downcast_ref::<Option<ReadError>>() {
-            Some(Some(ReadError {
-                kind: ReadErrorKind::Io(kind),
-                ..
-            })) => Some(*kind),
-            _ => None,
-        };
-        let of_file = any
-            .downcast_ref::<Option<FileError>>()
-            .and_then(Option::as_ref);
-        match kind.or(of_file.map(|own| own.error.kind())) {
-            Some(kind) => Self(io::Error::new(kind, text).into()),
-            None => Self::new(text),
-        }
+        Self(error.into())
     }
 }
 
 impl From<Failure> for PyErr {
-    fn from(failure: Failure) -> Self {
-        failure.0
+    fn from(Failure(error): Failure) -> Self {
+        let text = error.to_string();
+        let kind = match error.downcast_ref::<ReadError>().map(|own| own.kind) {
+            Some(ReadErrorKind::Io(kind)) => Some(kind),
+            _ => error.downcast_ref().map(|own: &FileError| own.error.kind()),
+        };
+        match (error.downcast::<Self>(), kind) {
+            (Ok(raised), _) => *raised,
+            (_, Some(kind)) => io::Error::new(kind, text).into(),
+            _ => PyValueError::new_err(text),
+        }
     }
 }

@@ -2,21 +2,19 @@
 
 use std::fs::File;
 use std::path::PathBuf;
-use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex};
-use std::thread::JoinHandle;
 
 use numpy::prelude::*;
-use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray3};
+use numpy::{PyArray1, PyReadonlyArray3, PyReadwriteArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use pythonize::{depythonize, pythonize};
-use rayon::prelude::*;
-use taxel_core::frame::{Frame, FrameError, FrameSize, Processing, Rule, TareFrames, View};
+use pythonize::pythonize;
+use taxel_core::frame::{Frame, FrameSize, Processing, Rule, TareFrames, View};
 use taxel_core::lock::locked;
 use taxel_core::progress::stop_if;
+use taxel_files::ReadError;
 use taxel_files::acquire::{
     AcquireEvent, AcquireOptions, FrameSource, Playback, acquire, metadata_beside,
 };
@@ -24,36 +22,32 @@ use taxel_files::formats::recording::{
     ChannelChoice, ChannelInfo, Format, RecordingEvent, read as read_recording,
 };
 
-use crate::arrays::{TICK, filled, interruptible, shaped, write};
+use crate::arrays::{TICK, fill_each, interruptible, shaped, write};
 use crate::failure::{Failure, Result};
 
 /// How frames are read, by the keywords of `read` and `watch`.
-#[derive(serde::Deserialize)]
-struct Reading {
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Reading {
     channel: Option<String>,
     rows: Option<u16>,
     columns: Option<u16>,
-    time: Option<String>,
-    label: Option<String>,
+    time_column: Option<String>,
+    label_column: Option<String>,
 }
 
 impl Reading {
-    fn options(given: &Bound<'_, PyAny>) -> Result<AcquireOptions> {
-        fn column<T: FromStr<Err = String>>(key: &str, text: Option<&str>) -> Result<Option<T>> {
-            let parsed = text.map(str::parse).transpose();
-            parsed.map_err(|error| Failure::new(format!("{key}_column: {error}")))
+    fn options(self) -> Result<AcquireOptions> {
+        if self.rows.is_some() != self.columns.is_some() {
+            return Err("rows and columns are given together".into());
         }
-        let own: Self = depythonize(given)?;
-        let size = match (own.rows, own.columns) {
-            (None, None) => None,
-            (Some(rows), Some(columns)) => Some(FrameSize::new(columns, rows)?),
-            _ => return Err(Failure::new("rows and columns are given together")),
-        };
+        let size = self.columns.zip(self.rows);
+        let size = size.map(|(columns, rows)| FrameSize::new(columns, rows));
         Ok(AcquireOptions {
-            size,
-            channel: own.channel,
-            time_column: column("time", own.time.as_deref())?,
-            label_column: column("label", own.label.as_deref())?,
+            size: size.transpose()?,
+            channel: self.channel,
+            time_column: self.time_column.map(|own| own.parse()).transpose()?,
+            label_column: self.label_column.map(|own| own.parse()).transpose()?,
             ..AcquireOptions::default()
         })
     }
@@ -61,21 +55,16 @@ impl Reading {
 
 /// Why the frames of a channel cannot be told, if one must be chosen or is missing.
 fn unchosen(options: &AcquireOptions, choice: &ChannelChoice) -> Option<String> {
-    let names = &choice.names;
-    if options.channel.is_none() && names.len() > 1 {
-        let (count, names) = (names.len(), names.join(", "));
-        return Some(format!(
-            "{count} channels, choose one with channel=: {names}"
-        ));
-    }
-    choice.missing()
+    let (count, names) = (choice.names.len(), choice.names.join(", "));
+    let several = format!("{count} channels, choose one with channel=: {names}");
+    let is_chosen = options.channel.is_some() || count < 2;
+    choice.missing().or((!is_chosen).then_some(several))
 }
 
 /// Returns the parts of a Recording, notes, and the error at which it is damaged.
 #[pyfunction]
-pub(crate) fn read<'py>(path: PathBuf, reading: &Bound<'py, PyAny>) -> Result<Bound<'py, PyTuple>> {
-    let (py, options) = (reading.py(), Reading::options(reading)?);
-    let refused = |why: String| Failure::new(format!("{}: {why}", path.display()));
+pub(crate) fn read(py: Python<'_>, path: PathBuf, reading: Reading) -> Result<Bound<'_, PyTuple>> {
+    let options = reading.options()?;
     let file = File::open(&path).map_err(|error| Failure::of(&path, error))?;
     let (metadata, mut notes) = match metadata_beside(&path) {
         Ok(metadata) => (metadata, Vec::new()),
@@ -106,11 +95,10 @@ pub(crate) fn read<'py>(path: PathBuf, reading: &Bound<'py, PyAny>) -> Result<Bo
             stop_if(misfit.is_some() || stopped.load(Ordering::Relaxed))
         })
     })?;
-    if let Some(why) = misfit.or(unchosen(&options, &choice)) {
-        return Err(refused(why));
-    }
-    if times.is_empty() && done.is_ok() {
-        return Err(refused("no frames".to_owned()));
+    let is_empty = times.is_empty() && done.is_ok();
+    let refused = misfit.or(unchosen(&options, &choice));
+    if let Some(why) = refused.or(is_empty.then(|| "no frames".to_owned())) {
+        return Err(Failure::of(path, ReadError::new(why)));
     }
     let sides = size.map_or([0; 2], |own| [own.rows(), own.columns()].map(usize::from));
     let has_times = times.iter().any(|time| !time.is_nan());
@@ -124,23 +112,22 @@ pub(crate) fn read<'py>(path: PathBuf, reading: &Bound<'py, PyAny>) -> Result<Bo
         info.pitch_mm.map(|[x, y]| (x, y)),
         info.threshold,
         notes,
-        done.err().map(|error| Failure::of(&path, error).0),
+        done.err()
+            .map(|error| PyErr::from(Failure::of(&path, error))),
     );
     Ok(parts.into_pyobject(py)?)
 }
 
-/// The frames between two looks at whether to stop.
-const CHUNK: usize = 256;
-
 /// The rule is `at_least`, percent, low, high, deviations.
 #[pyfunction]
-pub(crate) fn threshold<'py>(
-    py: Python<'py>,
-    frames: PyReadonlyArray3<'py, f64>,
+pub(crate) fn threshold(
+    py: Python<'_>,
+    frames: PyReadonlyArray3<'_, f64>,
     rule: [Option<f64>; 5],
     least: u32,
-    tare: Option<PyReadonlyArray3<'py, f64>>,
-) -> Result<Bound<'py, PyArrayDyn<bool>>> {
+    tare: Option<PyReadonlyArray3<'_, f64>>,
+    mut imprints: PyReadwriteArray3<'_, bool>,
+) -> Result<()> {
     let (size, values) = (frame_size(&frames)?, frames.as_slice()?);
     let mut processing = Processing::default();
     processing.least = least;
@@ -149,10 +136,7 @@ pub(crate) fn threshold<'py>(
         [None, Some(percent), None, None, None] => Rule::percent(percent)?,
         [None, None, Some(low), Some(high), None] => Rule::hysteresis(low, high)?,
         [None, None, None, None, Some(deviations)] => Rule::noise(deviations)?,
-        _ => {
-            let text = "expected one rule: at_least, percent, both low and high, or deviations";
-            return Err(Failure::new(text));
-        }
+        _ => Err("expected one rule: at_least, percent, both low and high, or deviations")?,
     });
     if let Some(tare) = tare {
         let (size, values) = (frame_size(&tare)?, tare.as_slice()?);
@@ -162,24 +146,13 @@ pub(crate) fn threshold<'py>(
         }
         processing.tare = Some(made.finish()?);
     }
-    filled(py, frames.shape(), |cells| {
-        let own = size.cells();
-        interruptible(py, |stopped| {
-            let start = || (processing.clone(), Frame::new(size));
-            let chunks = cells.par_chunks_mut(CHUNK * own);
-            let chunks = chunks.zip(values.par_chunks(CHUNK * own));
-            chunks.try_for_each_init(start, |(processing, frame), (cells, values)| {
-                for (cells, values) in cells.chunks_mut(own).zip(values.chunks(own)) {
-                    frame.set_values(values)?;
-                    if let Some(imprint) = processing.run(frame)?.imprint {
-                        write(&imprint, cells);
-                    }
-                }
-                let goes_on = !stopped.load(Ordering::Relaxed);
-                let stopped = || FrameError::Invalid("stopped".to_owned());
-                goes_on.then_some(()).ok_or_else(stopped)
-            })
-        })??;
+    let start = || (processing.clone(), Frame::new(size));
+    let parts = (imprints.as_slice_mut()?, size.cells());
+    fill_each(py, parts, start, |(processing, frame), index, cells| {
+        frame.set_values(&values[index * cells.len()..][..cells.len()])?;
+        if let Some(imprint) = processing.run(frame)?.imprint {
+            write(&imprint, cells);
+        }
         Ok(())
     })
 }
@@ -190,17 +163,12 @@ fn frame_size(frames: &PyReadonlyArray3<'_, f64>) -> Result<FrameSize> {
     Ok(FrameSize::new(columns?, rows?)?)
 }
 
-/// The most frames that wait until they are taken.
-const WAITING: usize = 256;
-
-/// What a Watch holds.
-#[pyclass(frozen)]
+/// The frames of a source; those that arrive wait until they are taken.
+#[pyclass(frozen, subclass, module = "taxel._taxel")]
 pub(crate) struct Watch {
-    /// None once it is closed.
-    arrived: Mutex<Option<Receiver<Result<Frame>>>>,
-    thread: Mutex<Option<JoinHandle<()>>>,
-    stop: Arc<AtomicBool>,
-    dropped: Arc<AtomicU64>,
+    arrived: Mutex<Receiver<Result<Frame>>>,
+    /// Whether it is to end, and the number of frames that were dropped.
+    state: Arc<(AtomicBool, AtomicU64)>,
 }
 
 /// Sends the frames of a source until it ends or is closed, and says why it has failed.
@@ -208,7 +176,7 @@ fn watched(
     source: &FrameSource,
     options: &AcquireOptions,
     sender: &SyncSender<Result<Frame>>,
-    (stop, dropped): (&AtomicBool, &AtomicU64),
+    (stop, dropped): &(AtomicBool, AtomicU64),
 ) -> Result<()> {
     let mut choice = ChannelChoice::new(options.channel.as_deref());
     let (mut refused, mut has_frame) = (None, false);
@@ -216,6 +184,7 @@ fn watched(
         match event {
             AcquireEvent::Channel(info) => {
                 choice.add(info);
+                // One that is asked for may come later.
                 refused = unchosen(options, &choice).filter(|_| options.channel.is_none());
             }
             AcquireEvent::Frame { frame, time } if choice.takes(frame.channel) => {
@@ -233,13 +202,10 @@ fn watched(
     });
     let name = source.name();
     done.map_err(|error| Failure::of(&name, error))?;
-    if !has_frame && !stop.load(Ordering::Relaxed) {
-        refused = refused
-            .or(choice.missing())
-            .or(Some("no frames".to_owned()));
-    }
-    let refused = refused.map(|why| Failure::new(format!("{name}: {why}")));
-    refused.map_or(Ok(()), Err)
+    let is_empty = !has_frame && !stop.load(Ordering::Relaxed);
+    let missing = is_empty.then(|| choice.missing().unwrap_or("no frames".to_owned()));
+    let refused = refused.or(missing).map(ReadError::new);
+    refused.map_or(Ok(()), |error| Err(Failure::of(name, error)))
 }
 
 #[pymethods]
@@ -247,50 +213,41 @@ impl Watch {
     #[new]
     fn new(
         source: PathBuf,
-        reading: &Bound<'_, PyAny>,
+        reading: Reading,
         format: Option<&str>,
         baud: Option<u32>,
         once: bool,
     ) -> Result<Self> {
-        let format = format.filter(|name| *name != "auto");
         let options = AcquireOptions {
             format: format.map(Format::of_stream).transpose()?,
             baud,
             playback: if once { Playback::Once } else { Playback::Live },
-            ..Reading::options(reading)?
+            ..reading.options()?
         };
         let source = FrameSource::new(&source);
         if let Some(why) = baud.and_then(|_| source.unused_baud()) {
-            return Err(Failure::new(format!("baud has no effect {why}")));
+            return Err(format!("baud has no effect {why}").into());
         }
         let checked = source.check();
         checked.map_err(|error| Failure::of(source.name(), error))?;
-        let (stop, dropped) = (Arc::<AtomicBool>::default(), Arc::<AtomicU64>::default());
-        let (sender, arrived) = sync_channel(WAITING);
-        let own = (Arc::clone(&stop), Arc::clone(&dropped));
-        let thread = std::thread::Builder::new().spawn(move || {
-            if let Err(failure) = watched(&source, &options, &sender, (&own.0, &own.1)) {
+        let (sender, arrived) = sync_channel(256);
+        let state = Arc::<(AtomicBool, AtomicU64)>::default();
+        let own = Arc::clone(&state);
+        std::thread::spawn(move || {
+            if let Err(failure) = watched(&source, &options, &sender, &own) {
                 // It may be that nobody waits any more.
                 let _ = sender.send(Err(failure));
             }
-        })?;
-        Ok(Self {
-            arrived: Mutex::new(Some(arrived)),
-            thread: Mutex::new(Some(thread)),
-            stop,
-            dropped,
-        })
+        });
+        let arrived = Mutex::new(arrived);
+        Ok(Self { arrived, state })
     }
 
     /// Returns the parts of a Frame; None at the end.
-    fn next<'py>(&self, py: Python<'py>) -> Result<Option<Bound<'py, PyTuple>>> {
+    fn __next__<'py>(&self, py: Python<'py>) -> Result<Option<Bound<'py, PyTuple>>> {
         loop {
-            let next = || {
-                let arrived = locked(&self.arrived);
-                arrived.as_ref().map(|own| own.recv_timeout(TICK))
-            };
-            match py.detach(next) {
-                Some(Ok(arrived)) => {
+            match py.detach(|| locked(&self.arrived).recv_timeout(TICK)) {
+                Ok(arrived) => {
                     let frame = arrived?;
                     let sides = [frame.rows(), frame.columns()].map(usize::from);
                     let values = shaped(py, frame.values().to_vec(), &sides)?;
@@ -298,28 +255,22 @@ impl Watch {
                     let parts = (values, frame.time, frame.number, label);
                     return Ok(Some(parts.into_pyobject(py)?));
                 }
-                Some(Err(RecvTimeoutError::Timeout)) => py.check_signals()?,
-                Some(Err(RecvTimeoutError::Disconnected)) | None => return Ok(None),
+                Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+                Err(RecvTimeoutError::Disconnected) => return Ok(None),
             }
         }
     }
 
+    /// The number of frames that were torn, short, long or garbled so far.
+    #[getter]
     fn dropped(&self) -> u64 {
-        self.dropped.load(Ordering::Relaxed)
+        self.state.1.load(Ordering::Relaxed)
     }
 
+    /// Closes the source; the iteration ends.
     fn close(&self, py: Python<'_>) {
-        py.detach(|| {
-            self.stop.store(true, Ordering::Relaxed);
-            *locked(&self.arrived) = None;
-            // It has nothing left to say.
-            let _ = locked(&self.thread).take().map(JoinHandle::join);
-        });
-    }
-}
-
-impl Drop for Watch {
-    fn drop(&mut self) {
-        self.stop.store(true, Ordering::Relaxed);
+        self.state.0.store(true, Ordering::Relaxed);
+        // The thread that sends lets go of the source, then of the channel.
+        py.detach(|| while locked(&self.arrived).recv().is_ok() {});
     }
 }

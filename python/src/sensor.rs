@@ -2,102 +2,70 @@
 
 use std::collections::HashMap;
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
+use std::sync::Arc;
 
-use numpy::{Element, PyArray1, PyArrayDyn, PyReadonlyArray1};
+use numpy::{Element, PyArray1, PyArrayDyn, PyReadonlyArray2, PyReadwriteArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
-use rayon::prelude::*;
 use taxel_core::atlas::{STATISTIC_COLUMNS, features};
 use taxel_core::parameter::Parameter;
-use taxel_core::pose::{DecimalRange, GivenRanges, PoseGrid, default_ranges, figure_ranges};
+use taxel_core::pose::{GivenRanges, PoseGrid, default_ranges, figure_ranges};
 use taxel_core::sensor::{SENSOR_PARAMETERS, Sensor as CoreSensor};
 use taxel_core::source::Source;
 use taxel_core::sweep::{Sweep, SweepResult};
 use taxel_core::touch::Plane;
 use taxel_files::storage::{Existing, atlas_path, write_atlas};
 
-use crate::arrays::{filled, interruptible, within_memory, write};
-use crate::failure::{Failure, Result};
+use crate::arrays::{fill_each, shaped, within_memory, write};
+use crate::failure::Result;
 use crate::shapes::Shape;
 
-#[pyclass(frozen, eq, subclass, module = "taxel")]
+#[pyclass(frozen, eq, subclass, module = "taxel._taxel")]
 #[derive(PartialEq)]
 pub(crate) struct Sensor {
     pub(crate) own: CoreSensor,
     pub(crate) pitch: Option<f64>,
 }
 
-/// The touches between two looks at whether to stop.
-const CHUNK: usize = 64;
-
-/// The values of a parameter: one for all poses, or one for each.
-#[derive(FromPyObject)]
-enum Value<'py> {
-    One(f64),
-    Many(PyReadonlyArray1<'py, f64>),
-}
-
-/// The poses of touches: the keys of parameters, their values, and the shape of the array of poses; empty for one.
-type Poses<'py> = (Vec<String>, Vec<Value<'py>>, Vec<usize>);
-
 impl Sensor {
-    /// What a touch computes, for one pose or for each of many.
-    fn touched<'py, T: Element + Send>(
+    /// What touches compute: for each row of `poses`, which has a value for each key, a part of `cells`.
+    fn touched<T: Element + Send>(
         &self,
-        shape: &Bound<'py, Shape>,
-        (keys, values, poses): Poses<'py>,
-        compute: impl Fn(&mut Plane, &Source, &mut [T]) + Sync,
-    ) -> Result<Bound<'py, PyArrayDyn<T>>> {
-        let (py, sensor) = (shape.py(), self.own);
-        let base = shape.get().0.clone().at_pitch(self.pitch)?;
+        shape: &Bound<'_, Shape>,
+        keys: Vec<String>,
+        poses: PyReadonlyArray2<'_, f64>,
+        mut cells: PyReadwriteArrayDyn<'_, T>,
+        compute: impl Fn(&mut Plane, &Source, &mut [T]) + Sync + Send,
+    ) -> Result<()> {
+        let (sensor, base) = (self.own, &shape.get().0.source);
+        let base = base.clone().at_pitch(self.pitch)?;
         let mut given = Vec::new();
-        for (key, values) in keys.iter().zip(&values) {
+        for key in keys {
             let parameter = key.parse::<Parameter>()?;
             if !base.parameters().contains(&parameter) {
                 base.clone().with(parameter, 0.0, &sensor)?;
             }
-            let values = match values {
-                Value::One(value) => std::slice::from_ref(value),
-                Value::Many(values) => values.as_slice()?,
-            };
-            given.push((parameter, values));
+            given.push(parameter);
         }
-        let posed = |shape: Source, index: usize| -> Result<Source> {
-            let value = |wanted: Parameter| {
-                let given = given.iter().find(|(own, _)| *own == wanted);
-                given.map_or(base.get(wanted), |(_, values)| Some(values[index]))
+        let (poses, cells) = (poses.as_slice()?, cells.as_slice_mut()?);
+        let start = || (Plane::new(sensor), base.clone());
+        let fill = |(plane, base): &mut (Plane, Source), index, cells: &mut [T]| -> Result<()> {
+            let value = |wanted: Parameter| match given.iter().position(|own| *own == wanted) {
+                Some(key) => Some(poses[index * given.len() + key]),
+                None => base.get(wanted),
             };
-            let shape = shape.placed(&sensor, value)?;
+            let shape = base.clone().placed(&sensor, value)?;
             shape.check_size(&sensor)?;
-            Ok(shape)
+            compute(plane, &shape, cells);
+            Ok(())
         };
         let size = sensor.size().cells();
-        let sides = [sensor.rows(), sensor.columns()].map(usize::from);
-        filled(py, &[&poses[..], &sides].concat(), |cells| {
-            if poses.is_empty() {
-                compute(&mut Plane::new(sensor), &posed(base.clone(), 0)?, cells);
-                return Ok(());
-            }
-            let done = interruptible(py, |stopped| {
-                let start = || (Plane::new(sensor), base.clone());
-                let chunks = cells.par_chunks_mut(CHUNK * size).enumerate();
-                chunks.try_for_each_init(start, |(plane, shape), (chunk, cells)| {
-                    for (index, cells) in (chunk * CHUNK..).zip(cells.chunks_mut(size)) {
-                        compute(plane, &posed(shape.clone(), index).ok()?, cells);
-                    }
-                    (!stopped.load(Ordering::Relaxed)).then_some(())
-                })
-            })?;
-            if done.is_none() {
-                // The first wrong pose, whichever was found first.
-                let wrong = |index| Some((index, posed(base.clone(), index).err()?));
-                if let Some((index, failure)) = (0..cells.len() / size).find_map(wrong) {
-                    let why = failure.0.value(py);
-                    return Err(Failure::new(format!("element {index}: {why}")));
-                }
-            }
-            Ok(())
+        if cells.len() == size {
+            return fill(&mut start(), 0, cells);
+        }
+        fill_each(shape.py(), (cells, size), start, |state, index, cells| {
+            let filled = fill(state, index, cells);
+            filled.map_err(|failure| format!("element {index}: {}", failure.0).into())
         })
     }
 }
@@ -105,7 +73,7 @@ impl Sensor {
 #[pymethods]
 impl Sensor {
     #[new]
-    #[pyo3(signature = (columns, rows, threshold, pitch))]
+    #[pyo3(signature = (columns=16.0, rows=16.0, threshold=0.5, pitch=None))]
     fn new(columns: f64, rows: f64, threshold: f64, pitch: Option<f64>) -> Result<Self> {
         let mut own = CoreSensor::default();
         let values = [Some(columns), Some(rows), Some(threshold), pitch];
@@ -115,39 +83,38 @@ impl Sensor {
         Ok(Self { own, pitch })
     }
 
-    fn touch<'py>(
+    fn touch(
         &self,
-        shape: &Bound<'py, Shape>,
-        poses: Poses<'py>,
-    ) -> Result<Bound<'py, PyArrayDyn<bool>>> {
-        self.touched(shape, poses, |plane, shape, cells| {
+        shape: &Bound<'_, Shape>,
+        keys: Vec<String>,
+        poses: PyReadonlyArray2<'_, f64>,
+        imprints: PyReadwriteArrayDyn<'_, bool>,
+    ) -> Result<()> {
+        self.touched(shape, keys, poses, imprints, |plane, shape, cells| {
             write(plane.touched(shape), cells);
         })
     }
 
-    fn coverage<'py>(
+    fn coverage(
         &self,
-        shape: &Bound<'py, Shape>,
-        poses: Poses<'py>,
-    ) -> Result<Bound<'py, PyArrayDyn<f64>>> {
-        self.touched(shape, poses, |plane, shape, cells| {
+        shape: &Bound<'_, Shape>,
+        keys: Vec<String>,
+        poses: PyReadonlyArray2<'_, f64>,
+        coverages: PyReadwriteArrayDyn<'_, f64>,
+    ) -> Result<()> {
+        self.touched(shape, keys, poses, coverages, |plane, shape, cells| {
             plane.touched(shape);
             plane.write_coverages(cells);
         })
     }
 }
 
-/// A range such as "5:5.99:0.01".
-pub(crate) fn range(text: &str, key: &str) -> Result<DecimalRange> {
-    text.parse()
-        .map_err(|error| Failure::new(format!("{key}: {error}")))
-}
-
-/// The ranges of a grid, by the names of their axes.
+/// The ranges of a grid, such as "5:5.99:0.01", by the names of their axes.
 pub(crate) fn given_ranges(texts: &HashMap<String, String>) -> Result<GivenRanges> {
     let mut ranges = GivenRanges::default();
     for (axis, text) in texts {
-        ranges[axis.parse()?] = Some(range(text, axis)?);
+        let range = text.parse().map_err(|error| format!("{axis}: {error}"))?;
+        ranges[axis.parse()?] = Some(range);
     }
     Ok(ranges)
 }
@@ -158,10 +125,10 @@ pub(crate) fn sweep(
     shape: &Bound<'_, Shape>,
     anchor: &str,
     ranges: HashMap<String, String>,
-) -> Result<Swept> {
+) -> Result<Atlas> {
     let Sensor { own: sensor, pitch } = *sensor.get();
     let (anchor, given) = (anchor.parse()?, given_ranges(&ranges)?);
-    let own = match shape.get().0.clone().at_pitch(pitch)? {
+    let own = match shape.get().0.source.clone().at_pitch(pitch)? {
         Source::Outline(own) => own.in_the_middle(&sensor).into(),
         own => own,
     };
@@ -172,33 +139,42 @@ pub(crate) fn sweep(
         _ => default_ranges(&own, &sensor, anchor, &given)?,
     };
     let grid = PoseGrid::new(own, sensor, anchor, found)?;
-    let advice = "take coarser steps or shorter ranges";
-    within_memory(shape.py(), advice, |progress| {
-        Swept(Sweep::new(&grid).with_progress(progress).run())
+    within_memory(shape.py(), |progress| {
+        Atlas(Arc::new(Sweep::new(&grid).with_progress(progress).run()))
     })
 }
 
-/// What an Atlas holds.
-#[pyclass(frozen)]
-pub(crate) struct Swept(pub(crate) SweepResult);
+/// What a sweep has found; the class Atlas is made of it.
+#[pyclass(frozen, subclass, module = "taxel._taxel")]
+#[derive(Clone)]
+pub(crate) struct Atlas(pub(crate) Arc<SweepResult>);
 
 #[pymethods]
-impl Swept {
+impl Atlas {
+    #[new]
+    fn new(own: &Bound<'_, Self>) -> Self {
+        own.get().clone()
+    }
+
+    /// The imprints: a bool array, imprints × rows × columns.
     fn imprints<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyArrayDyn<bool>>> {
         let size = self.0.grid.sensor().size();
         let [rows, columns] = [size.rows(), size.columns()].map(usize::from);
-        filled(py, &[self.0.atlas.len(), rows, columns], |cells| {
-            for (cells, entry) in cells.chunks_mut(size.cells()).zip(self.0.atlas.entries()) {
-                write(&entry.imprint, cells);
-            }
-            Ok(())
-        })
+        let entries = self.0.atlas.entries();
+        let mut cells = vec![false; self.0.atlas.len() * size.cells()];
+        for (cells, entry) in cells.chunks_mut(size.cells()).zip(entries) {
+            write(&entry.imprint, cells);
+        }
+        shaped(py, cells, &[self.0.atlas.len(), rows, columns])
     }
 
+    /// The number of poses that leave each imprint: a uint64 array.
     fn counts<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u64>> {
         PyArray1::from_iter(py, self.0.atlas.counts())
     }
 
+    /// The descriptors of the main region of each imprint: a dict of float64 arrays by "na", "`cg_x`" and so on, NaN
+    /// where a descriptor does not exist.
     fn descriptors<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyDict>> {
         let values = |feature| {
             let values = self.0.atlas.values(feature).into_iter();
@@ -209,6 +185,8 @@ impl Swept {
         Ok(all.into_py_dict(py)?)
     }
 
+    /// The statistics of each descriptor over all poses: a dict of dicts with "min", "mean", "max", "sd", "cv" and so
+    /// on; None where there is no value.
     fn statistics(&self) -> HashMap<&str, HashMap<&str, Option<f64>>> {
         let rows = self.0.statistics.iter().map(|row| {
             let columns = STATISTIC_COLUMNS.iter();
@@ -218,8 +196,11 @@ impl Swept {
         rows.collect()
     }
 
+    /// Writes the file of `taxel sweep --atlas`: .npz, .csv or .jsonl. An existing file is replaced.
+    ///
+    /// Raises `ValueError` for another ending, `OSError` if the file cannot be written.
     fn save(&self, py: Python<'_>, path: PathBuf) -> Result<()> {
-        let path = atlas_path(path).map_err(Failure::new)?;
+        let path = atlas_path(path)?;
         py.detach(|| write_atlas(&path, &self.0, Existing::Replaced)?.persist())?;
         Ok(())
     }

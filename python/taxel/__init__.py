@@ -8,9 +8,11 @@ a file an OSError, in the program's words. Long work uses all cores, releases th
 import json
 import os
 import signal
+import subprocess
 import sys
+import tempfile
 import warnings
-from dataclasses import dataclass
+from collections import namedtuple
 from functools import cached_property
 
 import numpy as np
@@ -57,16 +59,27 @@ def _frames(values, what):
 
 def _poses(values):
     if all(isinstance(value, (float, int)) for value in values.values()):
-        return list(values), list(values.values()), ()
+        return list(values), np.array([list(values.values())], np.float64), ()
     arrays = np.broadcast_arrays(*(_numbers(value, key) for key, value in values.items()))
-    return list(values), [array.ravel() for array in arrays], arrays[0].shape
+    return list(values), np.stack(arrays, -1).reshape(-1, len(arrays)), arrays[0].shape
 
 
 def _ranges(**ranges):
     return {axis: str(given) for axis, given in ranges.items() if given is not None}
 
 
-class Figure(_taxel.Shape):
+class _Made:
+    """What is printed, copied and pickled as the arguments that it was made of."""
+
+    def __getnewargs_ex__(self):
+        return (), vars(self)
+
+    def __repr__(self):
+        arguments = (f"{key}={value!r}" for key, value in vars(self).items() if value is not None)
+        return f"{type(self).__name__}({', '.join(arguments)})"
+
+
+class Figure(_taxel.Shape, _Made):
     """One of seven figures: Figure(kind, **sizes).
 
     kind is "ellipse" (radius_x, radius_y), "rectangle" (length, width), or "triangle", "pentagon", "hexagon", "heptagon"
@@ -77,19 +90,13 @@ class Figure(_taxel.Shape):
     """
 
     def __new__(cls, kind, **sizes):
-        return super().__new__(cls, _json(figure=kind, **sizes))
+        return super().__new__(cls, _json(name=kind, figure=kind, **sizes), None)
 
     def __init__(self, kind, **sizes):
-        self.kind, self.sizes = kind, sizes
-
-    def __getnewargs_ex__(self):
-        return (self.kind,), self.sizes
-
-    def __repr__(self):
-        return f"Figure({self.kind!r}{''.join(f', {key}={size}' for key, size in self.sizes.items())})"
+        vars(self).update(kind=kind, **sizes)
 
 
-class Picture(_taxel.Shape):
+class Picture(_taxel.Shape, _Made):
     """A stored imprint as a shape: Picture(mask).
 
     mask is a bool array, rows × columns, 1 × 1 to 64 × 64; each active taxel is a square of one cell. A picture is scaled
@@ -100,19 +107,14 @@ class Picture(_taxel.Shape):
     def __new__(cls, mask):
         if np.ndim(mask) == 3:
             raise ValueError("found a stack of imprints, expected one")
-        return super().__new__(cls, mask=_masks(mask))
+        rows = ["".join(".#"[taxel] for taxel in row) for row in _masks(mask)[0].tolist()]
+        return super().__new__(cls, _json(name="picture", imprint=rows), None)
 
     def __init__(self, mask):
         self.mask = mask
 
-    def __getnewargs__(self):
-        return (self.mask,)
 
-    def __repr__(self):
-        return f"<taxel.Picture: {self.mask.sum()} taxels>"
-
-
-class Outline(_taxel.Shape):
+class Outline(_taxel.Shape, _Made):
     """A shape of closed rings: Outline(rings, pitch=None).
 
     A ring is a polygon, as points (x, y) in a list or an array n × 2, or an ellipse, as a dict with cx, cy, rx, ry and
@@ -123,11 +125,11 @@ class Outline(_taxel.Shape):
     Raises ValueError for what is no outline.
     """
 
-    def __new__(cls, rings, pitch=None, name=None):
-        unit = {} if pitch is None else {"unit": "mm"}
-        return super().__new__(cls, _json(outline=rings, **unit), pitch=pitch, name=name)
+    def __new__(cls, rings, pitch=None, name="outline"):
+        unit = "cells" if pitch is None else "mm"
+        return super().__new__(cls, _json(name=name, outline=rings, unit=unit), pitch)
 
-    def __init__(self, rings, pitch=None, name=None):
+    def __init__(self, rings, pitch=None, name="outline"):
         self.rings, self.pitch, self.name = rings, pitch, name
 
     @classmethod
@@ -145,14 +147,8 @@ class Outline(_taxel.Shape):
             warnings.warn(f"{path}: left out: {', '.join(left_out)}", stacklevel=2)
         return cls(rings, pitch, os.path.splitext(os.path.basename(path))[0])
 
-    def __getnewargs__(self):
-        return self.rings, self.pitch, self.name
 
-    def __repr__(self):
-        return f"<taxel.Outline: {len(self.rings)} rings>"
-
-
-class Sensor(_taxel.Sensor):
+class Sensor(_taxel.Sensor, _Made):
     """A sensor: Sensor(columns=16, rows=16, threshold=0.5, pitch=None).
 
     columns and rows are from 1 to 64; threshold, above 0 and up to 1, is the share of a cell that must be covered for its
@@ -161,11 +157,8 @@ class Sensor(_taxel.Sensor):
     Raises ValueError for a value out of range.
     """
 
-    def __new__(cls, columns=16, rows=16, threshold=0.5, pitch=None):
-        return super().__new__(cls, columns, rows, threshold, pitch)
-
     def __init__(self, columns=16, rows=16, threshold=0.5, pitch=None):
-        self.columns, self.rows, self.threshold, self.pitch = columns, rows, threshold, pitch
+        self.columns, self.rows, self.threshold, self.pitch = int(columns), int(rows), threshold, pitch
 
     def touch(self, shape, **values):
         """Touches a shape: touch(shape, *, x0, y0, angle, ...) -> bool array, rows × columns.
@@ -176,11 +169,17 @@ class Sensor(_taxel.Sensor):
 
         Raises ValueError for an unknown keyword and for a value out of range.
         """
-        return super().touch(shape, _poses(values))
+        keys, poses, sides = _poses(values)
+        imprints = np.zeros((*sides, self.rows, self.columns), bool)
+        super().touch(shape, keys, poses, imprints)
+        return imprints
 
     def coverage(self, shape, **values):
         """The share of each cell that a shape covers, from 0 to 1: a float64 array. Takes what touch takes."""
-        return super().coverage(shape, _poses(values))
+        keys, poses, sides = _poses(values)
+        coverages = np.zeros((*sides, self.rows, self.columns))
+        super().coverage(shape, keys, poses, coverages)
+        return coverages
 
     def sweep(self, shape, *, x0=None, y0=None, angle=None, zoom_x=None, zoom_y=None, anchor="corner"):
         """Finds every imprint that a shape can leave in a grid of poses: an Atlas.
@@ -194,13 +193,6 @@ class Sensor(_taxel.Sensor):
         ranges = _ranges(x0=x0, y0=y0, angle=angle, zoom_x=zoom_x, zoom_y=zoom_y)
         return Atlas(_taxel.sweep(self, shape, anchor, ranges))
 
-    def __getnewargs__(self):
-        return self.columns, self.rows, self.threshold, self.pitch
-
-    def __repr__(self):
-        pitch = "" if self.pitch is None else f", pitch={self.pitch}"
-        return f"Sensor(columns={self.columns}, rows={self.rows}, threshold={self.threshold}{pitch})"
-
 
 def describe(imprint):
     """The regions of an imprint with their descriptors: a list of dicts, or for a stack, n × rows × columns, a list of
@@ -211,51 +203,23 @@ def describe(imprint):
 
     Raises ValueError for another array.
     """
-    regions = [answer["regions"] for answer in json.loads(_taxel.describe(_masks(imprint)))]
+    regions = [answer["regions"] for answer in map(json.loads, _taxel.describe(_masks(imprint)))]
     return regions if np.ndim(imprint) == 3 else regions[0]
 
 
-class Atlas:
+class Atlas(_taxel.Atlas):
     """Every imprint that a shape leaves in a grid of poses, in the order of their first poses; made by Sensor.sweep or
     taxel.load."""
 
-    def __init__(self, swept):
-        self._swept = swept
-
-    @cached_property
-    def imprints(self):
-        """The imprints: a bool array, imprints × rows × columns."""
-        return self._swept.imprints()
-
-    @cached_property
-    def counts(self):
-        """The number of poses that leave each imprint: a uint64 array."""
-        return self._swept.counts()
-
-    @cached_property
-    def descriptors(self):
-        """The descriptors of the main region of each imprint: a dict of float64 arrays by "na", "cg_x" and so on, NaN
-        where a descriptor does not exist."""
-        return self._swept.descriptors()
-
-    def statistics(self):
-        """The statistics of each descriptor over all poses: a dict of dicts with "min", "mean", "max", "sd", "cv" and so
-        on; None where there is no value."""
-        return self._swept.statistics()
-
-    def save(self, path):
-        """Writes the file of `taxel sweep --atlas`: .npz, .csv or .jsonl. An existing file is replaced.
-
-        Raises ValueError for another ending, OSError if the file cannot be written.
-        """
-        self._swept.save(path)
+    imprints = cached_property(_taxel.Atlas.imprints)
+    counts = cached_property(_taxel.Atlas.counts)
+    descriptors = cached_property(_taxel.Atlas.descriptors)
 
     def __repr__(self):
         return f"<taxel.Atlas: {len(self.counts)} imprints in {self.counts.sum()} poses>"
 
 
-@dataclass(frozen=True, repr=False, eq=False)
-class Recording:
+class Recording(namedtuple("Recording", "frames times labels channel unit pitch threshold")):
     """A recording of a real sensor; made by taxel.read.
 
     frames: the values in the recording's unit, a float64 array, frames × rows × columns, NaN where there is no cell.
@@ -264,17 +228,6 @@ class Recording:
     channel, unit: their names; pitch: the distance between cells along x and y in mm; threshold: the recording's own;
     each None if the recording does not say it.
     """
-
-    frames: object
-    times: object
-    labels: object
-    channel: object
-    unit: object
-    pitch: object
-    threshold: object
-
-    def __repr__(self):
-        return f"<taxel.Recording: frames {self.frames.shape}>"
 
 
 def read(path, *, channel=None, rows=None, columns=None, time_column=None, label_column=None):
@@ -286,7 +239,7 @@ def read(path, *, channel=None, rows=None, columns=None, time_column=None, label
     Raises OSError if the file cannot be read, ValueError if it is no recording, has several channels and none is chosen,
     or is damaged; then the frames before the damage are error.recording.
     """
-    reading = {"channel": channel, "rows": rows, "columns": columns, "time": time_column, "label": label_column}
+    reading = {"channel": channel, "rows": rows, "columns": columns, "time_column": time_column, "label_column": label_column}
     *parts, notes, failure = _taxel.read(path, reading)
     for note in notes:
         warnings.warn(f"{path}: {note}", stacklevel=2)
@@ -309,13 +262,13 @@ def threshold(
 
     Raises ValueError without a rule or with two, and for numbers or sizes out of range.
     """
-    shape, frames = np.shape(frames), _frames(frames, "frames")
-    tare = None if tare is None else _frames(tare, "tare")
-    return _taxel.threshold(frames, (at_least, percent, low, high, deviations), least, tare).reshape(shape)
+    values, tare = _frames(frames, "frames"), None if tare is None else _frames(tare, "tare")
+    imprints = np.zeros(values.shape, bool)
+    _taxel.threshold(values, (at_least, percent, low, high, deviations), least, tare, imprints)
+    return imprints.reshape(np.shape(frames))
 
 
-@dataclass(frozen=True, repr=False, eq=False)
-class Frame:
+class Frame(namedtuple("Frame", "values time number label")):
     """A frame of taxel.watch.
 
     values: a float64 array, rows × columns, in the sensor's unit, NaN where there is no cell.
@@ -323,39 +276,22 @@ class Frame:
     number: from 0; label: an int or a str, or None.
     """
 
-    values: object
-    time: object
-    number: int
-    label: object
 
-    def __repr__(self):
-        return f"<taxel.Frame {self.number}: values {self.values.shape}>"
-
-
-class Watch:
+class Watch(_taxel.Watch, _Made):
     """The frames of a source as they arrive, an iterator of Frame and a context that closes the source; made by
-    taxel.watch."""
+    taxel.watch.
 
-    def __init__(self, source, watched):
-        self._source, self._watched = source, watched
+    dropped is the number of frames that were torn, short, long or garbled so far; close() ends the iteration.
+    """
+
+    def __init__(self, source, *reading):
+        self.source = source
 
     def __iter__(self):
         return self
 
     def __next__(self):
-        arrived = self._watched.next()
-        if arrived is None:
-            raise StopIteration
-        return Frame(*arrived)
-
-    @property
-    def dropped(self):
-        """The number of frames that were torn, short, long or garbled so far."""
-        return self._watched.dropped()
-
-    def close(self):
-        """Closes the source; the iteration ends."""
-        self._watched.close()
+        return Frame(*super().__next__())
 
     def __enter__(self):
         return self
@@ -363,8 +299,7 @@ class Watch:
     def __exit__(self, *raised):
         self.close()
 
-    def __repr__(self):
-        return f"<taxel.Watch: {self._source}>"
+    __del__ = _taxel.Watch.close
 
 
 def watch(
@@ -380,8 +315,8 @@ def watch(
 
     Raises OSError if the source cannot be opened, ValueError if it is of no known format or ends without a frame.
     """
-    reading = {"channel": channel, "rows": rows, "columns": columns, "time": time_column, "label": label_column}
-    return Watch(source, _taxel.Watch(source, reading, format, baud, once))
+    reading = {"channel": channel, "rows": rows, "columns": columns, "time_column": time_column, "label_column": label_column}
+    return Watch(source, reading, format, baud, once)
 
 
 def train(
@@ -400,6 +335,7 @@ def train(
     items = shapes.items() if hasattr(shapes, "items") else [(None, shape) for shape in shapes]
     shapes = [(name, shape, (weights or {}).get(name, 1)) for name, shape in items]
     ranges = _ranges(x0=x0, y0=y0, angle=angle, zoom_x=zoom_x, zoom_y=zoom_y)
+    anchor = anchor or ("centre" if x0 is None and y0 is None else "corner")
     return Model(_taxel.train(shapes, sensor, ranges, anchor, positions, allow_cut))
 
 
@@ -409,28 +345,16 @@ def load(path):
     Raises OSError if the file cannot be read, ValueError if it is of another kind.
     """
     loaded = _taxel.load(path)
-    return Model(loaded) if isinstance(loaded, _taxel.Trained) else Atlas(loaded)
+    return Model(loaded) if isinstance(loaded, _taxel.Model) else Atlas(loaded)
 
 
-class Model:
-    """Every imprint of a set of shapes, and how often each shape leaves it; made by taxel.train or taxel.load.
-
-    labels: the names of the shapes, in the order of the set; sensor: the Sensor.
-    """
-
-    def __init__(self, trained):
-        self._trained = trained
-        self.labels, sensor = trained.head()
-        self.sensor = Sensor(*sensor)
+class Model(_taxel.Model):
+    """Every imprint of a set of shapes, and how often each shape leaves it; made by taxel.train or taxel.load."""
 
     @property
-    def error(self):
-        """The share of touches that even the best classifier of one touch names wrong (the Bayes error), from 0 to 1."""
-        return self._trained.error()
-
-    def confusion(self):
-        """The best classifier's confusion: a uint64 array, true shapes × named shapes, in the order of labels."""
-        return self._trained.confusion()
+    def sensor(self):
+        """The Sensor."""
+        return Sensor(*self.sides())
 
     def recognise(self, imprint, *, noise=None, dead=None, tolerance=None, reject=None):
         """Names the shape that left an imprint: an Answer; a list of them for a stack, n × rows × columns.
@@ -448,7 +372,8 @@ class Model:
             raise ValueError(f"reject {reject}: expected a probability from 0 to 1")
         if dead is not None and dead.shape != (1, *masks.shape[1:]):
             raise ValueError(f"dead is shaped {dead.shape[1:]}, the imprint {masks.shape[1:]}")
-        answers = [Answer(*answer) for answer in self._trained.recognise(masks, noise, dead, tolerance, reject)]
+        answers = super().recognise(masks, noise, dead, tolerance, reject)
+        answers = [Answer(*answer) for answer in answers]
         return answers if np.ndim(imprint) == 3 else answers[0]
 
     def separate(self, *, scale=None, pitch=None, threshold=None):
@@ -458,22 +383,23 @@ class Model:
         scale, or pitch in mm, is a range as of Sensor.sweep; threshold is that of the model unless given. Sizes at which
         the shapes do not fit on 64 × 64 taxels are left out.
         """
-        scale, pitch = (own and str(own) for own in (scale, pitch))
-        return self._trained.separate(scale, pitch, threshold)
-
-    def save(self, path):
-        """Writes the file of `taxel model train`, .npz. An existing file is replaced.
-
-        Raises OSError if the file cannot be written.
-        """
-        self._trained.save(path)
+        sizes = _ranges(scale=scale, pitch=pitch)
+        if len(sizes) != 1:
+            raise ValueError("expected a range as scale, or as pitch")
+        flags = [f"--{key}={value}" for key, value in {**sizes, **_ranges(threshold=threshold)}.items()]
+        program = [sys.executable, "-c", "import sys, taxel; sys.exit(taxel._main())", "model", "separate"]
+        with tempfile.NamedTemporaryFile(suffix=".npz") as file:
+            self.save(file.name)
+            done = subprocess.run([*program, file.name, *flags, "--json", "--quiet"], capture_output=True, text=True)
+        if done.returncode:
+            raise ValueError(done.stderr.strip().removeprefix("error: "))
+        return json.loads(done.stdout)["points"]
 
     def __repr__(self):
         return f"<taxel.Model: {', '.join(self.labels)}>"
 
 
-@dataclass(frozen=True)
-class Answer:
+class Answer(namedtuple("Answer", "name state ranking fit differs pose tied at_rim")):
     """The answer of Model.recognise.
 
     name: of the shape; None if rejected or unknown. state: "certain", "likely", "tied", "rejected" or "unknown".
@@ -482,15 +408,6 @@ class Answer:
     in cells, angle in degrees, and zooms other than 1.
     tied: the names that nothing tells apart, if that is the state. at_rim: whether the imprint may be cut off.
     """
-
-    name: object
-    state: str
-    ranking: list
-    fit: object
-    differs: object
-    pose: object
-    tied: list
-    at_rim: bool
 
 
 def _main():

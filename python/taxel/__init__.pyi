@@ -1,7 +1,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from types import TracebackType
-from typing import Any, Literal, Optional, Union, overload
+from typing import Any, Literal, NamedTuple, Optional, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -38,7 +38,7 @@ class Sensor:
 
 class Figure:
     kind: str
-    sizes: dict[str, float]
+    def __getattr__(self, size: str) -> float: ...
     def __new__(
         cls, kind: Literal["ellipse", "rectangle", "triangle", "pentagon", "hexagon", "heptagon", "octagon"], *,
         radius_x: float = ..., radius_y: float = ..., length: float = ..., width: float = ..., side: float = ...,
@@ -52,8 +52,8 @@ class Picture:
 class Outline:
     rings: Sequence[_Ring]
     pitch: Optional[float]
-    name: Optional[str]
-    def __new__(cls, rings: Sequence[_Ring], pitch: Optional[float] = None, name: Optional[str] = None) -> Outline: ...
+    name: str
+    def __new__(cls, rings: Sequence[_Ring], pitch: Optional[float] = None, name: str = "outline") -> Outline: ...
     @classmethod
     def read(
         cls, path: _Path, *, pitch: Optional[float] = None, mm_per_unit: Optional[float] = None, y_up: bool = False,
@@ -75,7 +75,7 @@ class Atlas:
     def statistics(self) -> dict[str, dict[str, Optional[float]]]: ...
     def save(self, path: _Path) -> None: ...
 
-class Recording:
+class Recording(NamedTuple):
     frames: NDArray[np.float64]
     times: Optional[NDArray[np.float64]]
     labels: Optional[list[Union[int, str, None]]]
@@ -93,13 +93,14 @@ def threshold(
     high: Optional[float] = None, deviations: Optional[float] = None, least: int = 0, tare: Optional[ArrayLike] = None,
 ) -> NDArray[np.bool_]: ...
 
-class Frame:
+class Frame(NamedTuple):
     values: NDArray[np.float64]
     time: Optional[float]
     number: int
     label: Union[int, str, None]
 
 class Watch(Iterator[Frame]):
+    source: _Path
     @property
     def dropped(self) -> int: ...
     def close(self) -> None: ...
@@ -143,7 +144,7 @@ class Model:
     ) -> list[dict[str, Any]]: ...
     def save(self, path: _Path) -> None: ...
 
-class Answer:
+class Answer(NamedTuple):
     name: Optional[str]
     state: Literal["certain", "likely", "tied", "rejected", "unknown"]
     ranking: list[tuple[str, float]]
