@@ -143,8 +143,8 @@ def test_arrays_in_any_layout_give_the_same(folder):
 ANGLES = np.tile(np.arange(360.0), 8000)
 LONG = {
     "touch": lambda: SENSOR.touch(FIGURE, x0=5, y0=5, angle=ANGLES),
-    "sweep": lambda: SENSOR.sweep(FIGURE, angle="0:359.99:0.01"),
-    "train": lambda: taxel.train([FIGURE], angle="0:359.99:0.01"),
+    "sweep": lambda: SENSOR.sweep(FIGURE, angle="0:359.999:0.001"),
+    "train": lambda: taxel.train([FIGURE], angle="0:359.999:0.001"),
     "watch": lambda: next(taxel.watch("fifo")),
 }
 
